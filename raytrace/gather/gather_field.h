@@ -31,14 +31,12 @@
 namespace earthshine::raytrace {
 
 inline constexpr std::size_t no_point = static_cast<std::size_t>(-1);
-// From this exponent on the surroundings are shaded ray by ray, not gathered.
-inline constexpr double sharp_lobe = 100.0;
 
 // Where light is gathered: on a diffuse or glossy surface, on a side that shines.
 struct GatherRequest {
   Vec3 position, normal;
   double reflectance = 1.0;  // luminance of k_d
-  double lobe = 0.0;         // of k_s; 0 where the exponent is sharp_lobe or more
+  double lobe = 0.0;         // of k_s; 0 where the exponent is tuning::sharp_lobe or more
   std::uint32_t material = 0;
 };
 using GatherSurface = std::function<bool(const scenes::Hit&, GatherRequest&)>;

@@ -4,21 +4,16 @@
 #include <algorithm>
 
 #include "raytrace/gather/gather_field.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
-namespace {
-
-constexpr double least_mirror = 0.01;  // what it reflects: less is not worth a point
-
-}  // namespace
-
 bool GatherField::place_mirrored(const Ray& ray, const scenes::Hit& hit, GatherPoint& point,
                                  RayStart& start) const {
   if (hit.missed()) return false;
   const scenes::Scene& scene = world_.scene;
   const scenes::Material& material = scene.materials[scene.triangles[hit.triangle].material];
   const double reflectance = base::luminance(material.mirror);
-  if (reflectance < least_mirror || base::is_lit(material.transmit) ||
+  if (reflectance < tuning::least_mirror || base::is_lit(material.transmit) ||
       !(hit.front || material.two_sided)) {
     return false;
   }
@@ -46,8 +41,9 @@ void GatherField::find_peers() {
     if (point.mirror == seen_straight || !setting_.shares) continue;
     const auto [x, y] = place_of(strays_[k].pixel);
     std::uint64_t bit = 1U;
-    for (int qy = y - Peers::reach; qy <= y + Peers::reach; ++qy) {
-      for (int qx = x - Peers::reach; qx <= x + Peers::reach; ++qx, bit <<= 1U) {
+    for (int qy = y - tuning::mirror_reach_px; qy <= y + tuning::mirror_reach_px; ++qy) {
+      for (int qx = x - tuning::mirror_reach_px; qx <= x + tuning::mirror_reach_px;
+           ++qx, bit <<= 1U) {
         if (!window_.contains(qx, qy)) continue;
         const std::size_t end = first_stray_[window_.index(qx, qy) + 1];
         if (end == first_stray_[window_.index(qx, qy)]) continue;

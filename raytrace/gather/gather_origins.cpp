@@ -6,17 +6,9 @@
 
 #include "base/numbers/random.h"
 #include "raytrace/gather/gather_field.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
-namespace {
-
-// Of its mean ray's length: how far about a point what comes in is much the same.
-constexpr float alike_share = 0.1F;
-// A point of the next pixel, over the way from a pixel's middle to its corner.
-constexpr float beside = 3.0F;
-
-}  // namespace
-
 float GatherField::footprint_radius(const GatherPoint& point) const {
   constexpr float half_diagonal = 0.7072F;
   const glm::vec3 view = point.position - eye_;
@@ -35,7 +27,7 @@ void GatherField::classify_origins(std::uint32_t round, const std::function<bool
     const bool met = lengths_[p].count > 0.0;
     const double reach_m =
         std::min(lengths_[p].harmonic_mean(), lengths_[p].harmonic_mean_of_light());
-    if (met && footprint_radius(point) <= alike_share * float(reach_m)) continue;
+    if (met && footprint_radius(point) <= tuning::alike_share * float(reach_m)) continue;
     over_pixel_[p] = 1U;
     anew[p] = static_cast<std::uint32_t>(estimate.samples[p]);
     lengths_[p] = {};
@@ -103,7 +95,8 @@ std::size_t GatherField::find_in(int x, int y, const Sighting& place) const {
   // Further off, as a lens out of focus looks, irradiance may be another.
   const auto if_near = [&](std::size_t index) {
     const GatherPoint& point = points_[index];
-    const float wide = std::min(6.0F * footprint_radius(point), alike_share * point.reach_m);
+    const float wide =
+        std::min(6.0F * footprint_radius(point), tuning::alike_share * point.reach_m);
     const float most = std::max(own_radius(index), wide);
     return glm::length(place.position - point.position) <= most ? index : no_point;
   };
@@ -154,7 +147,7 @@ std::size_t GatherField::find_beside(int x, int y, const Sighting& place, Gather
     const GatherPoint& point = points_[index];
     if (point.reach_m <= 0.0F || reflected(kind, index) <= 0.0) return;
     const float away = glm::length(place.position - point.position);
-    if (away >= distance || away > beside * footprint_radius(point)) return;
+    if (away >= distance || away > tuning::next_pixel_radius * footprint_radius(point)) return;
     const bool serves =
         kind == Gathered::Lobe ? stands_for(point, place) : lies_on_surface(point, place);
     if (!serves) return;

@@ -10,6 +10,7 @@
 #include "raytrace/gather/gather_field.h"
 #include "raytrace/gather/gather_tiles.h"
 #include "raytrace/share/share.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -22,13 +23,7 @@ constexpr std::array<double, packet_width> stray_columns = {0.0625, 0.1875, 0.31
                                                             0.5625, 0.6875, 0.8125, 0.9375};
 constexpr std::array<double, packet_width> stray_rows = {0.0625, 0.5625, 0.3125, 0.8125,
                                                          0.1875, 0.6875, 0.4375, 0.9375};
-constexpr float least_cover = 0.2F;  // of a pixel
-// What a lobe reflects turns twice as far as the surface does.
-constexpr float lobe_cosine = 0.985F;  // 10 degrees
-constexpr float rounding = 0.02F;      // of positions, over the points' spacing
-// From one pixel to the next: the mean of a lobe of exponent n over normals that differ so is off
-// by n 2^2 / (6 57^2) of its peak (its second derivative there), 0.4 % of n = 20.
-constexpr float turning_cosine = 0.99939F;  // 2 degrees
+constexpr float rounding = 0.02F;  // of positions, over the points' spacing
 
 scenes::Hit hit_of(const HitPacket& hits, std::size_t k) {
   return {hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0};
@@ -56,7 +51,7 @@ bool lies_on_surface(const GatherPoint& point, const Sighting& place) {
 
 bool stands_for(const GatherPoint& point, const Sighting& place) {
   return lies_on_surface(point, place) &&
-         (point.lobe <= 0.0F || glm::dot(point.normal, place.normal) >= lobe_cosine);
+         (point.lobe <= 0.0F || glm::dot(point.normal, place.normal) >= tuning::lobe_cosine);
 }
 
 bool GatherField::place(const Ray& ray, const scenes::Hit& hit, GatherPoint& point,
@@ -161,9 +156,10 @@ void GatherField::find_strays(const std::vector<Found>& mirrored) {
     }
     // Slivers are not worth a point of their own.
     const auto from = of_tile.begin() + static_cast<std::ptrdiff_t>(first);
-    of_tile.erase(std::remove_if(from, of_tile.end(),
-                                 [](const Found& one) { return one.stray.cover < least_cover; }),
-                  of_tile.end());
+    of_tile.erase(
+        std::remove_if(from, of_tile.end(),
+                       [](const Found& one) { return one.stray.cover < tuning::least_cover; }),
+        of_tile.end());
     for (std::size_t k = first; k < of_tile.size(); ++k) {
       Stray& stray = of_tile[k].stray;
       stray.base = no_base;
@@ -215,7 +211,7 @@ void GatherField::find_first_origins() {
     for (int ring = 0; ring <= 1; ++ring) {
       each_neighbour(window_, x, y, ring, [&](std::size_t q) {
         const bool turns = points_[q].reach_m > 0.0F && points_[q].material == point.material &&
-                           glm::dot(points_[q].normal, point.normal) < turning_cosine;
+                           glm::dot(points_[q].normal, point.normal) < tuning::turning_cosine;
         if (turns) over_pixel_[p] = 1;
       });
     }

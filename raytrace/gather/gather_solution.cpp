@@ -6,6 +6,7 @@
 #include "base/ranks/ranks.h"
 #include "raytrace/gather/gather_field.h"
 #include "raytrace/gather/gather_tiles.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -26,7 +27,9 @@ class SolutionRays {
   void run(std::uint64_t seed) {
     sums.assign(points_.count * layers_, Rgb(0.0));
     const std::size_t aimed =
-        incoming_.bright().empty() ? 0 : std::max<std::size_t>(1, rays_.rays() / 16);
+        incoming_.bright().empty()
+            ? 0
+            : std::max<std::size_t>(1, rays_.rays() / tuning::gather_rays_per_aimed);
     GatherRays::Samples samples;
     for (std::size_t first = 0; first < points_.count; first += rays_.batch()) {
       const std::size_t count = std::min(rays_.batch(), points_.count - first);

@@ -5,21 +5,9 @@
 #include <bit>
 
 #include "raytrace/gather/gather_field.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
-namespace {
-
-// Sharing at its finest reaches so many pixels across and down: of every block as wide as that the
-// middle is sampled.
-constexpr int reach = 2;
-// Peers with samples that stand for a stray: what is seen in mirrors is all of strays.
-constexpr int enough_peers = 4;
-// Rays of sharp lobes seldom meet what is bright, and what the fewest of them miss is stated as
-// none: by how high a point's lobe peaks over the mean of all it gets up to so many times as many.
-constexpr double most_times = 32.0;
-
-}  // namespace
-
 double GatherField::mean_lobe() const {
   double sum = 0.0, count = 0.0;
   for (const GatherPoint& point : points_) {
@@ -35,7 +23,7 @@ void GatherField::look_first(Gathered kind, std::uint32_t each, bool every_secon
   const bool few_rays = kind == Gathered::Lobe && each <= fewest_samples(kind);
   const double mean = few_rays ? mean_lobe() : 0.0;
   for (std::size_t p = 0; p < samples.size() && mean > 0.0; ++p) {
-    const double times = std::clamp(double(points_[p].lobe) / mean, 1.0, most_times);
+    const double times = std::clamp(double(points_[p].lobe) / mean, 1.0, tuning::most_lobe_times);
     samples[p] *= std::bit_floor(static_cast<std::uint32_t>(times));
   }
   for (std::size_t p = 0; every_second && setting_.shares && p < grid_; ++p) {
@@ -67,8 +55,10 @@ void GatherField::look_quickly(Gathered kind) {
            static_cast<std::size_t>(x);
   };
   const auto is_served = [&](int x, int y) {
-    for (int qy = std::max(0, y - reach); qy <= std::min(rows - 1, y + reach); ++qy) {
-      for (int qx = std::max(0, x - reach); qx <= std::min(columns - 1, x + reach); ++qx) {
+    for (int qy = std::max(0, y - tuning::stop_reach_px);
+         qy <= std::min(rows - 1, y + tuning::stop_reach_px); ++qy) {
+      for (int qx = std::max(0, x - tuning::stop_reach_px);
+           qx <= std::min(columns - 1, x + tuning::stop_reach_px); ++qx) {
         if (sampled[at(qx, qy)] != 0 && serves(at(qx, qy), at(x, y))) return true;
       }
     }
@@ -76,8 +66,9 @@ void GatherField::look_quickly(Gathered kind) {
   };
   // The one that serves most of those which come later: they lie to the right and below.
   const auto best_for = [&](int x, int y) {
-    for (int away = 2 * reach; away > 0; --away) {
-      for (int dy = std::max(0, away - reach); dy <= std::min(away, reach); ++dy) {
+    for (int away = 2 * tuning::stop_reach_px; away > 0; --away) {
+      for (int dy = std::max(0, away - tuning::stop_reach_px);
+           dy <= std::min(away, tuning::stop_reach_px); ++dy) {
         const int qx = x + away - dy, qy = y + dy;
         if (qx < columns && qy < rows && serves(at(qx, qy), at(x, y))) return at(qx, qy);
       }
@@ -89,9 +80,9 @@ void GatherField::look_quickly(Gathered kind) {
       if (wants(p)) sample(p);
     }
   }
-  constexpr int block = 2 * reach + 1;
-  for (int y = reach; y < rows; y += block) {
-    for (int x = reach; x < columns; x += block) {
+  constexpr int block = 2 * tuning::stop_reach_px + 1;
+  for (int y = tuning::stop_reach_px; y < rows; y += block) {
+    for (int x = tuning::stop_reach_px; x < columns; x += block) {
       if (wants(at(x, y))) sample(at(x, y));
     }
   }
@@ -105,7 +96,7 @@ void GatherField::look_quickly(Gathered kind) {
     if (!wants(p) || strays_[p - grid_].base != no_base) continue;
     int served_by = 0;
     peers.each(p - grid_, [&](std::size_t peer) { served_by += sampled[grid_ + peer]; });
-    if (served_by < enough_peers) sample(p);
+    if (served_by < tuning::enough_peers) sample(p);
   }
   cast(kind, missing, 0, {});
 }

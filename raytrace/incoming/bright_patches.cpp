@@ -5,10 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "raytrace/tuning.h"
+
 namespace earthshine::raytrace {
 namespace {
 
-constexpr double bright_ratio = 16.0;
 // The greatest number below 1: a child of probability 0 is never chosen.
 constexpr double below_one = 1.0 - 0x1p-53;
 
@@ -30,7 +31,7 @@ BrightPatches::BrightPatches(const radiosity::Solution& solution) : source_(&sol
     area += solution.patches.area_m2[i];
   }
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (power[i] * area > bright_ratio * all_power * solution.patches.area_m2[i]) {
+    if (power[i] * area > tuning::bright_ratio * all_power * solution.patches.area_m2[i]) {
       patches_.push_back(i);
     }
   }

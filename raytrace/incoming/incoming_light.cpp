@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raytrace/tuning.h"
 #include "scenes/light_ways.h"
 #include "scenes/reflect/specular.h"
 #include "scenes/sky/sky.h"
@@ -13,8 +14,6 @@ namespace earthshine::raytrace {
 namespace {
 
 using base::pi;
-
-constexpr int most_specular_steps = 64;  // as many as rays of the form factors take
 
 }  // namespace
 
@@ -32,7 +31,7 @@ void IncomingLight::follow_specular(scenes::Hit hit, Vec3 direction, const RaySh
                                     Rgb weight, std::span<Rgb> out, RayCounts& rays) const {
   const bool aimed = share.aimed_at != radiosity::no_patch;
   bool straight = true;
-  for (int step = 0; step < most_specular_steps; ++step) {
+  for (int step = 0; step < tuning::most_specular_steps; ++step) {
     const scenes::Material& material = scene_.materials[scene_.triangles[hit.triangle].material];
     const bool glass = base::max_component(material.transmit) > 0.0;
     if (!material.passes_light_on() || !(hit.front || material.two_sided || glass)) return;

@@ -5,19 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "raytrace/tuning.h"
 #include "scenes/light/solid_angle.h"
 
 namespace earthshine::raytrace {
-namespace {
-
-// In lengths of the footprint. Farther off illuminance goes up and down by no more than a half
-// within it, which a few samples show.
-constexpr double near_lengths = 2.0;
-constexpr double flattest = 0.05;  // cosine of the view; flatter, the plane ends within the pixel
-constexpr int most_rays = 256;
-
-}  // namespace
-
 Footprint::Footprint(const PixelView& pixel, const Ray& ray, const Vec3& point, const Vec3& normal,
                      double offset_m)
     : pixel_(pixel), lens_(ray.origin), point_(point), normal_(normal), offset_m_(offset_m) {
@@ -32,7 +23,7 @@ Footprint::Footprint(const PixelView& pixel, const Ray& ray, const Vec3& point, 
     for (const double y : {-reach, reach}) {
       const Vec3 way = pixel.camera.direction_from(lens_, pixel.x + 0.5 + x, pixel.y + 0.5 + y);
       const double fall = glm::dot(way, normal);
-      if (fall > -flattest) return;
+      if (fall > -tuning::flattest) return;
       const Vec3 off = lens_ + height / fall * way - point;
       const glm::dvec2 at(glm::dot(off, along), glm::dot(off, across));
       low = glm::min(low, at);
@@ -47,7 +38,7 @@ Footprint::Footprint(const PixelView& pixel, const Ray& ray, const Vec3& point, 
 
 bool Footprint::is_near(const Vec3& lamp) const {
   const Vec3 way = lamp - (corner_ + 0.5 * (along_ + across_));
-  return glm::dot(way, normal_) > 0.0 && glm::length(way) < near_lengths * longest_m_;
+  return glm::dot(way, normal_) > 0.0 && glm::length(way) < tuning::near_lengths * longest_m_;
 }
 
 bool Footprint::is_seen(const scenes::RayQuery& query, const Vec3& direction) const {
@@ -84,7 +75,7 @@ Footprint::Places Footprint::toward(const Vec3& lamp, const scenes::RayQuery& qu
   // Of the samples the share that meets the plane asks. The mean number of rays until one meets it
   // is one over that share.
   int rays = 1;
-  for (; rays < most_rays; ++rays) {
+  for (; rays < tuning::most_footprint_rays; ++rays) {
     const double x = rng.next(), y = rng.next();
     const auto offset = pixel_.filter.offset(x, y);
     if (is_seen(query, camera.direction_from(lens_, middle.x + offset[0], middle.y + offset[1]))) {

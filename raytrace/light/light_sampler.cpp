@@ -8,17 +8,13 @@
 
 #include "base/numbers/sobol_set.h"
 #include "radiosity/direct/sources.h"
+#include "raytrace/tuning.h"
 #include "scenes/effects/shining.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_cells.h"
 
 namespace earthshine::raytrace {
 namespace {
-
-// Up to this many lamps all get shadow rays: choosing among them costs more than it saves.
-constexpr std::size_t few_lamps = 32;
-// Lamps that may give more than this share of the light count as ones that matter.
-constexpr double smallest_share = 1.0 / 16.0;
 
 constexpr double rounding = 1e-9;
 
@@ -93,7 +89,7 @@ void LightSampler::gather_clusters(bool per_group) {
     if (!lamp) always_.push_back(k);
   }
   for (auto& [group, lights] : lamps) {
-    if (lights.size() <= few_lamps) {
+    if (lights.size() <= tuning::few_lamps) {
       always_.insert(always_.end(), lights.begin(), lights.end());
       continue;
     }
@@ -162,7 +158,7 @@ void LightSampler::choose_thrown(const Throws& throws, const scenes::Receiver& r
   for (const std::size_t light : throws.always) chosen.push_back({light, 1.0});
   for (const Cluster& crowd : clusters_) {
     const std::size_t from = chosen.size();
-    crowd.tree.choose(receiver, u, smallest_share, chosen);
+    crowd.tree.choose(receiver, u, tuning::smallest_share, chosen);
     for (std::size_t k = from; k < chosen.size(); ++k) {
       chosen[k].light = first + crowd.lights[chosen[k].light];
     }

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "base/units.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
 
@@ -18,14 +19,16 @@ class SunTurns {
   SunTurns() = default;  // nothing takes turns: turn 0 has it all
   // first_layer: of the first Sun, with one layer after another for each.
   SunTurns(std::size_t first_layer, std::size_t suns)
-      : first_(first_layer), suns_(suns), count_(suns > most ? most : 1) {}
+      : first_(first_layer),
+        suns_(suns),
+        count_(suns > tuning::most_sun_sets ? tuning::most_sun_sets : 1) {}
 
   [[nodiscard]] std::size_t count() const { return count_; }
   // Of the k-th sample of a half. Each half takes all turns one after another, or the halves would
   // not differ by chance alone; those of few samples together, as they begin with different ones:
   // what halves of less than four samples differ by tells more noise than their sum has.
   [[nodiscard]] std::size_t turn_of(std::uint64_t first, std::uint64_t k, std::size_t half) const {
-    return (first + k + half * (most / 2)) % count_;
+    return (first + k + half * (tuning::most_sun_sets / 2)) % count_;
   }
   // What the light of a layer counts in samples of that turn. Suns of one turn are spread over the
   // orbit, so that all turns are about equally bright.
@@ -41,8 +44,6 @@ class SunTurns {
   }
 
  private:
-  // A power of two: samples are, so that each Sun has equally many.
-  static constexpr std::size_t most = 4;
   std::size_t first_ = 0, suns_ = 0, count_ = 1;
 };
 

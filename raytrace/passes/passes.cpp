@@ -8,6 +8,7 @@
 
 #include "raytrace/passes/pilot_pass.h"
 #include "raytrace/passes/rounds.h"
+#include "raytrace/tuning.h"
 #include "raytrace/witness/witness.h"
 
 namespace earthshine::raytrace {
@@ -15,15 +16,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int hasty_share = 4;  // a sample's gather rays over those where time is up
-constexpr int most_rounds = 6;  // of camera samples, each at most four times the one before
 constexpr std::array<Gathered, gathered_kinds> every_kind = {Gathered::Solution, Gathered::Residual,
                                                              Gathered::Lobe};
-// What must follow a gather field's points, at the least, over the time that finding them takes
-// (payload bay: 6 by day, 9 by night); and what must follow sharing.
-constexpr double after_points = 9.0, after_sharing = 4.0;
-// Pictures of more layers are measured, not looked at: what the eye minds costs them most.
-constexpr std::size_t most_layers_looked_at = 8;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -35,9 +29,6 @@ Window widened(const Window& window, int pixels, const CameraModel& camera) {
   const int y1 = std::min(camera.rows, window.y + window.rows + pixels);
   return {x0, y0, x1 - x0, y1 - y0};
 }
-
-// For the witness, at the most: samples, and of the time that a limit leaves.
-constexpr double witness_samples = 1048576.0, witness_per_pixel = 4.0, time_for_witness = 0.25;
 
 class Passes {
  public:
@@ -101,7 +92,7 @@ class Passes {
         pilot.deviation > 0.0 ? wanted_error * wanted_error / pilot.deviation : 1.0;
     // Rounds look at neighbours: a crop gets the same pixels as the whole picture only if what
     // surrounds it is worked out too.
-    const Window around = widened(window_, 1 + most_rounds, camera_);
+    const Window around = widened(window_, 1 + tuning::most_rounds, camera_);
     const double samples = std::max(double(how.least_samples),
                                     per_deviation > 0.0 ? pilot.deviation / per_deviation : 0.0);
     const double gathers = shared_.gathers ? options_.gather_rays : 0;
@@ -122,9 +113,10 @@ class Passes {
     shared_.dimmest = pilot.dimmest;
     first_round(everywhere(how.least_samples));
     shared_.dimmest.clear();
-    if (!ends()) shade(wanted_for_the_eye(*sums_, sums_->scatter, dimmest_share * pilot.luminance));
+    if (!ends())
+      shade(wanted_for_the_eye(*sums_, sums_->scatter, tuning::dimmest_share * pilot.luminance));
     shade_witnessed(how.noise, pilot.luminance);
-    for (int round = 1; round < most_rounds && !ends() && per_deviation > 0.0; ++round) {
+    for (int round = 1; round < tuning::most_rounds && !ends() && per_deviation > 0.0; ++round) {
       shade(wanted_samples(*sums_, per_deviation, pilot.bright(), how.least_samples,
                            how.most_samples));
     }
@@ -138,7 +130,7 @@ class Passes {
     if (shared_.gathers) {
       const auto start = Clock::now();
       begin_field();
-      reserve_s_ = after_points * seconds_since(start);
+      reserve_s_ = tuning::after_points * seconds_since(start);
       const FirstLook first =
           first_look(options_.error, std::max(field_->points().size(), options_.first_look_pixels));
       look_first(Gathered::Solution, first.gather_rays, first.every_second);
@@ -147,13 +139,13 @@ class Passes {
       covered = !ends();
       share();
       report_.gather_seconds += seconds_since(start);
-      reserve_s_ *= after_sharing / after_points;
+      reserve_s_ *= tuning::after_sharing / tuning::after_points;
     }
     const int least = options_.shared.least_samples;
     first_round(by_edges(least, std::max(std::min(2, least), least / 2)));
     reserve_s_ = 0.0;
-    if (!ends() && shared_.layers <= most_layers_looked_at) {
-      const double dimmest = dimmest_share * sums_->mean_luminance();
+    if (!ends() && shared_.layers <= tuning::most_layers_for_eye) {
+      const double dimmest = tuning::dimmest_share * sums_->mean_luminance();
       shade(wanted_for_the_eye(*sums_, scatter_of_samples(*sums_, dimmest), dimmest));
     }
     shade_witnessed(options_.error, sums_->mean_luminance());
@@ -276,7 +268,7 @@ class Passes {
     report_.least_camera_samples = static_cast<int>(*std::ranges::min_element(samples));
     shade(samples);
     if (!ends()) return;
-    if (!field_) shared_.gather_rays = std::max(1, shared_.gather_rays / hasty_share);
+    if (!field_) shared_.gather_rays = std::max(1, shared_.gather_rays / tuning::hasty_share);
     std::vector<std::uint32_t> least = field_ ? by_edges(2, 1) : everywhere(2);
     const auto columns = static_cast<std::size_t>(sums_->window.columns);
     for (std::size_t p = 0; p < least.size(); ++p) {
@@ -294,8 +286,9 @@ class Passes {
   // Samples. A picture without a wanted error or a time limit has no bound, so that a crop has the
   // pixels of the whole.
   [[nodiscard]] double most_for_witness() const {
-    double most =
-        options_.error > 0.0 ? std::max(witness_samples, witness_per_pixel * pixels()) : 0.0;
+    double most = options_.error > 0.0
+                      ? std::max(tuning::witness_samples, tuning::witness_per_pixel * pixels())
+                      : 0.0;
     if (options_.time_limit_s <= 0.0) return most;
     const SampleCosts each = sample_costs(field());
     double samples = 0.0, cost = 0.0;
@@ -304,7 +297,7 @@ class Passes {
       cost += each.camera * sums_->samples[p] + each.camera_ray * double(sums_->rays[p]);
     }
     const double left = affordable(spent(*sums_, field(), each));
-    const double in_time = time_for_witness * left * samples / std::max(cost, 1.0);
+    const double in_time = tuning::time_for_witness * left * samples / std::max(cost, 1.0);
     return std::max(1.0, most > 0.0 ? std::min(most, in_time) : in_time);
   }
 

@@ -5,19 +5,14 @@
 #include <mutex>
 
 #include "base/parallel.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
-namespace {
-
-constexpr int planning_grid = 48;  // pixels along the shorter edge that are looked at
-
-}  // namespace
-
 PilotPass run_pilot_pass(ShadingScene shared, const CameraModel& camera, int samples,
                          const std::function<bool()>& stop) {
   shared.diffuse = DiffuseSource::Solution;
   shared.splits_parts = false;
-  const int step = std::max(1, std::min(camera.columns, camera.rows) / planning_grid);
+  const int step = std::max(1, std::min(camera.columns, camera.rows) / tuning::planning_grid);
   const int columns = (camera.columns + step - 1) / step, rows = (camera.rows + step - 1) / step;
   const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   std::vector<PixelSums> looks(count, PixelSums({0, 0, 1, 1}, shared.layers, false));
@@ -42,7 +37,7 @@ PilotPass run_pilot_pass(ShadingScene shared, const CameraModel& camera, int sam
     pilot.luminance += look.reflected(0);
     for (std::size_t k = 0; k < shared.layers; ++k) {
       pilot.dimmest[shared.light_of_layer[k]] +=
-          dimmest_share * base::luminance(Rgb(look.radiance[k])) / samples;
+          tuning::dimmest_share * base::luminance(Rgb(look.radiance[k])) / samples;
     }
     pixels += 1.0;
   }

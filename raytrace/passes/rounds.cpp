@@ -6,31 +6,20 @@
 #include <cmath>
 #include <limits>
 
+#include "raytrace/tuning.h"
+
 namespace earthshine::raytrace {
-namespace {
-
-constexpr double most_step = 4.0;  // less squared error a round
-// No round costs less of all before, if it can help: each takes a sharing and a look, too.
-constexpr double least_step = 0.05;
-constexpr double fine_error = 0.04;  // from there down a first look is a full one
-constexpr double sure_share_of_coarse = 0.94, sure_share_of_fine = 0.9;
-static_assert(planned_share < sure_share_of_fine);  // or it would plan for what it refuses
-constexpr std::size_t least_paths = 1U << 16U;      // of a first look, up to rounding down
-constexpr double hopeless_growth = 1024.0, hopeless_share = 0.5;
-
-}  // namespace
-
 double sure_share(double wanted) {
-  return wanted > fine_error ? sure_share_of_coarse : sure_share_of_fine;
+  return wanted > tuning::fine_error ? tuning::sure_share_of_coarse : tuning::sure_share_of_fine;
 }
 
 FirstLook first_look(double wanted, std::size_t points) {
   FirstLook first;
-  if (wanted <= 0.0 || wanted > fine_error) {
+  if (wanted <= 0.0 || wanted > tuning::fine_error) {
     first.gather_rays /= 2, first.paths /= 2;
-    first.every_second = first.paths * points / 2 >= least_paths;
+    first.every_second = first.paths * points / 2 >= tuning::least_paths;
   }
-  const std::size_t each = least_paths / std::max<std::size_t>(1, points);
+  const std::size_t each = tuning::least_paths / std::max<std::size_t>(1, points);
   first.paths = std::max(first.paths, std::bit_floor(static_cast<std::uint32_t>(each)));
   return first;
 }
@@ -53,12 +42,13 @@ std::optional<SamplePlan> Rounds::next(SamplePlanner& planner, double so_far, do
     return {};
   }
   // Step by step: what few samples say of more of them is rough.
-  const double step = std::max(aimed, now / most_step);
+  const double step = std::max(aimed, now / tuning::most_step);
   // No more than samples that are spread as so far would take.
-  const double most = std::min(affordable, std::max(least_step, now / aimed - 1.0) * so_far);
+  const double most =
+      std::min(affordable, std::max(tuning::least_step, now / aimed - 1.0) * so_far);
   SamplePlan plan = planner.plan(step, most);
   // A few points that turned out bad cost next to nothing: what is worst beside them goes along.
-  const double fewest = std::min(most, least_step * so_far);
+  const double fewest = std::min(most, tuning::least_step * so_far);
   if (plan.cost < 0.5 * fewest) plan = planner.plan(aimed, fewest);
   // A single point's next step may be larger than that.
   if (plan.cost <= 0.0) plan = planner.plan(aimed, affordable);
@@ -81,9 +71,9 @@ double Rounds::growth(SamplePlanner& planner, double so_far) const {
 
 bool Rounds::is_hopeless(const std::vector<Look>& looks) {
   const auto before = std::find_if(looks.rbegin(), looks.rend(), [&](const Look& look) {
-    return look.cost <= looks.back().cost / hopeless_growth;
+    return look.cost <= looks.back().cost / tuning::hopeless_growth;
   });
-  return before != looks.rend() && looks.back().error > hopeless_share * before->error;
+  return before != looks.rend() && looks.back().error > tuning::hopeless_share * before->error;
 }
 
 }  // namespace earthshine::raytrace

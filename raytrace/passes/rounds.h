@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "raytrace/passes/sample_plan.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
 
@@ -18,8 +19,6 @@ namespace earthshine::raytrace {
 // more of a coarse one, since a round more for a hundredth of the samples takes a twentieth of the
 // time.
 [[nodiscard]] double sure_share(double wanted);
-// And samples are planned for this share, over the doubt: the next statement may turn out larger.
-inline constexpr double planned_share = 0.873;
 
 // What a first look casts at gather points. Where a coarse picture is wanted, or any that a time
 // limit allows, half as many gather rays and paths, and of all three kinds none at every second
@@ -27,7 +26,8 @@ inline constexpr double planned_share = 0.873;
 // as the whole where more samples should go (payload bay, 5 %; at 3 % it does not). In small
 // pictures more paths, for light that few of them find.
 struct FirstLook {
-  std::uint32_t gather_rays = 16, paths = 4, lobe_rays = 2;
+  std::uint32_t gather_rays = tuning::initial_gather_rays;
+  std::uint32_t paths = tuning::initial_paths, lobe_rays = tuning::initial_lobe_rays;
   bool every_second = false;  // GatherField::look_first()
 };
 [[nodiscard]] FirstLook first_look(double wanted, std::size_t points);
@@ -68,7 +68,7 @@ class Rounds {
 
  private:
   [[nodiscard]] double squared_aim(double doubt) const {
-    const double aim = planned_share * wanted_ / doubt;
+    const double aim = tuning::planned_share * wanted_ / doubt;
     return aim * aim;
   }
 

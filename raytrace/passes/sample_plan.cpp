@@ -7,23 +7,16 @@
 #include <iterator>
 
 #include "base/parallel.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
 namespace {
 
-// Time of a ray, and of a camera sample beside its rays, over that of one of a packet of gather
-// rays (measured on the payload bay by its three lights).
-constexpr double ray_cost = 1.5, path_ray_cost = 1.7, camera_cost = 3.0;
 constexpr auto camera_kind = static_cast<std::uint8_t>(gathered_kinds);
 constexpr int bisections = 24;
-constexpr double greatest_price = 1e6;  // squared error per ray
-// Where a ray gains so much less than a ray so far has on the average, nothing is cast, as long as
-// others gain more: what few samples promise there is often wrong, and the next look tells better.
-constexpr double least_gain = 0.2, least_gain_of_all = 1e-6;
+constexpr double greatest_price = 1e6;      // squared error per ray
 constexpr std::size_t sample_classes = 33;  // of pixels, by the powers of two of their samples
-constexpr std::size_t few_pixels = 64;
 constexpr std::size_t items_at_once = 4096;
-constexpr double unsure_samples = 4.0;  // up to there a pixel's own say nothing
 
 std::size_t class_of(std::uint32_t samples) {
   return static_cast<std::size_t>(std::bit_width(samples));
@@ -53,8 +46,8 @@ struct Scatter {
 
 SampleCosts sample_costs(const GatherField* field) {
   SampleCosts costs;
-  costs.camera = camera_cost;
-  costs.camera_ray = ray_cost;
+  costs.camera = tuning::camera_cost;
+  costs.camera_ray = tuning::ray_cost;
   if (field == nullptr) return costs;
   for (const Gathered kind : {Gathered::Residual, Gathered::Lobe}) {
     double cast = 0.0;
@@ -63,7 +56,7 @@ SampleCosts sample_costs(const GatherField* field) {
     }
     const auto total = static_cast<double>(field->rays_of(kind).total());
     costs.field[static_cast<std::size_t>(kind)] =
-        path_ray_cost * (1.0 + total / std::max(1.0, cast));
+        tuning::path_ray_cost * (1.0 + total / std::max(1.0, cast));
   }
   return costs;
 }
@@ -194,10 +187,10 @@ void SamplePlanner::look_at_pixels(double scale) {
     const double samples = std::max(1U, sums_.samples[p]);
     const double weight = stated_.weight(p, whole_.luminance);
     const double unseen = weight * weight * contrast * contrast * share_missed(samples);
-    const double likely =
-        std::max({variance[p], around * std::min(1.0, unsure_samples / samples), unseen * samples});
+    const double likely = std::max(
+        {variance[p], around * std::min(1.0, tuning::unsure_samples / samples), unseen * samples});
     const Scatter& like = of_class[class_of(sums_.samples[p])];
-    const double better = (like.pixels < few_pixels ? all : like).share();
+    const double better = (like.pixels < tuning::few_pixels_of_class ? all : like).share();
     const double error = likely * better * scale / samples;
     if (error <= 0.0) return {};
     const double cost = samples * costs_.camera + double(sums_.rays[p]) * costs_.camera_ray;
@@ -257,8 +250,8 @@ SamplePlan SamplePlanner::plan(double wanted, double most_cost) {
   for (const Gain& gain : gains) all += double(gain.cost);
   if (all <= 0.0 || now <= 0.0) return plan;
   const double mean_gain = now / all;
-  const bool any = outcome(gains, least_gain * mean_gain).cost > 0.0;
-  double low = std::log((any ? least_gain : least_gain_of_all) * mean_gain);
+  const bool any = outcome(gains, tuning::least_gain * mean_gain).cost > 0.0;
+  double low = std::log((any ? tuning::least_gain : tuning::least_gain_of_all) * mean_gain);
   double high = std::log(greatest_price);
   std::vector<Gain> worth;  // at the least price; most are not
   std::ranges::copy_if(gains, std::back_inserter(worth), [&](const Gain& gain) {

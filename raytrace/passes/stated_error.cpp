@@ -6,12 +6,12 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
 namespace {
 
 constexpr double rounding = 1e-6;  // of sums in single precision
-constexpr double one_sided_90 = 1.2816;
 
 // Adds up what the pixel reads from gather points, and their errors: those of one kind are taken as
 // going the same way.
@@ -117,7 +117,7 @@ ErrorSums add_up(const StatedError& stated, std::span<const std::size_t> pixels)
   }
   const double square = sums.squared_error();
   if (square <= 0.0) return sums;
-  sums.doubt = std::sqrt(1.0 + one_sided_90 * std::sqrt(2.0 / 3.0 * fourths) / square);
+  sums.doubt = std::sqrt(1.0 + tuning::one_sided_90 * std::sqrt(2.0 / 3.0 * fourths) / square);
   return sums;
 }
 

@@ -5,24 +5,12 @@
 #include <cmath>
 
 #include "raytrace/paths/path_walker.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
 namespace {
 
 using base::pi;
-
-// Of the rays from a diffuse surface, how many are aimed at bright patches if there
-// are any.
-constexpr double aimed_share = 0.25;
-// Walks go on with the probability of what is left of the light, but with this at least:
-// where the solution is wrongly black, a walk that always ended there would never find out.
-constexpr double least_survival = 0.05;
-// In a closed room that reflects nearly all, walks would be 1 / (1 - reflectance) long, for a
-// residual that is next to nothing if the solution is any good. From this many turns on so many of
-// them end at each doubling of their length: they have 640 turns in the mean at most, and those
-// that are left stand for the others.
-constexpr int long_walk = 128;
-constexpr double long_walk_survival = 0.4;
 
 }  // namespace
 
@@ -70,8 +58,9 @@ void PathWalker::follow(const IncomingLight& solution, scenes::Hit hit) {
     kept_ = solution.add(hit, ray_.direction, share_, weight_, radiance_, rays_);
     if (goes_straight_on_) continue;
     const double carried = base::max_component(weight_) * (kept_ > 0.0 ? kept_ : 1.0);
-    double survival = std::clamp(carried, least_survival, 1.0);
-    if (turns >= long_walk && std::has_single_bit(turns)) survival *= long_walk_survival;
+    double survival = std::clamp(carried, tuning::least_survival, 1.0);
+    if (turns >= tuning::long_walk && std::has_single_bit(turns))
+      survival *= tuning::long_walk_survival;
     if (rng_->next() >= survival) return;
     weight_ /= survival;
   }
@@ -85,9 +74,9 @@ bool PathWalker::turn_diffusely(const IncomingLight& solution, const Vec3& origi
   turn();
   ++rays_.gather;
   const bool aims = !solution.bright().empty();
-  if (aims && rng_->next() < aimed_share) {
-    const IncomingLight::Aimed aimed =
-        solution.aim({origin, normal}, rng_->next(), u, v, 1.0 - aimed_share, aimed_share);
+  if (aims && rng_->next() < tuning::aimed_share) {
+    const IncomingLight::Aimed aimed = solution.aim({origin, normal}, rng_->next(), u, v,
+                                                    1.0 - tuning::aimed_share, tuning::aimed_share);
     weight_ *= aimed.weight;
     ray_ = {origin, aimed.direction};
     share_ = aimed.share;
@@ -98,11 +87,11 @@ bool PathWalker::turn_diffusely(const IncomingLight& solution, const Vec3& origi
   ray_ = {origin, frame.to_world({radius * std::cos(phi), radius * std::sin(phi), cosine})};
   share_ = {};
   if (!aims) return true;
-  weight_ /= 1.0 - aimed_share;
+  weight_ /= 1.0 - tuning::aimed_share;
   share_.cosine = cosine;
   share_.from = {origin, normal};
-  share_.found_rays = 1.0 - aimed_share;
-  share_.aimed_rays = aimed_share;
+  share_.found_rays = 1.0 - tuning::aimed_share;
+  share_.aimed_rays = tuning::aimed_share;
   return true;
 }
 

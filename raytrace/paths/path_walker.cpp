@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "raytrace/tuning.h"
 #include "scenes/reflect/specular.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_cells.h"
@@ -17,13 +18,6 @@ namespace {
 using base::pi;
 using scenes::no_group;
 
-// Paths go on for sure as long as they carry this share of what a first hit would; below it they go
-// on with the probability that keeps it.
-constexpr double sure_weight = 0.25;
-// Between perfect mirrors nothing is ever lost: from here on every path ends some time. The odds
-// are so small that the variance stays finite up to reflectances of 0.9999^(1/2).
-constexpr int long_path = 1000;
-constexpr double long_path_survival = 0.9999;
 }  // namespace
 
 void PathWalker::begin(const Ray& start, base::Rng& rng) {
@@ -290,8 +284,8 @@ void PathWalker::scatter(const Surface& surface, bool by_lobe) {
 }
 
 bool PathWalker::survives(int bounce) {
-  double survival = std::min(1.0, base::max_component(weight_) / sure_weight);
-  if (bounce >= long_path) survival = std::min(survival, long_path_survival);
+  double survival = std::min(1.0, base::max_component(weight_) / tuning::sure_weight);
+  if (bounce >= tuning::long_path) survival = std::min(survival, tuning::long_path_survival);
   if (survival < 1.0 && rng_->next() >= survival) return false;
   weight_ /= survival;
   return true;

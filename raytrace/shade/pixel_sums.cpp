@@ -8,14 +8,12 @@
 #include <mutex>
 
 #include "base/ranks/ranks.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
 namespace {
 
 constexpr int tile_edge_px = 16;
-constexpr std::size_t few_pixels = 64;
-// What the eye overlooks in a pixel of four samples, and of eight.
-constexpr double most_scatter = 1.0 / 3.0, most_of_eight = 1.414 * most_scatter;
 
 void shade_pixel(const ShadingScene& shared, const CameraModel& camera, int x, int y,
                  std::uint32_t first, std::uint32_t end, bool by_layer, PixelShader& shader) {
@@ -170,7 +168,7 @@ double PixelSums::squared_error(std::size_t pixel) const {
   }
   if (samples[pixel] == 0) return 0.0;
   // Of few pixels the halves tell little: there their samples' spread, which is an upper bound.
-  if (window.pixel_count() < few_pixels) return sample_variance(pixel);
+  if (window.pixel_count() < tuning::few_pixels) return sample_variance(pixel);
   const double n = samples[pixel], off = half_difference[pixel] / n;
   if (spot_luminance.empty() || spot_luminance[pixel] <= 0.0F) return off * off;
   const double edge = error_of_edge * std::pow(n, -0.75) * double(spot_luminance[pixel]);
@@ -236,11 +234,11 @@ void PixelSums::pass(std::size_t pixel, base::Parcel& parcel) {
 
 namespace {
 
-// That leave an edge between that share of the brighter side and less an error of 2 % of it
+// Samples that leave an edge of that contrast, over its brighter side, an error of edge_for_eye
 // (error_of_edge).
 std::uint32_t samples_for_edge(double contrast) {
-  return std::bit_ceil(
-      static_cast<std::uint32_t>(std::pow(error_of_edge / 0.02 * contrast, 4.0 / 3.0)));
+  return std::bit_ceil(static_cast<std::uint32_t>(
+      std::pow(error_of_edge / tuning::edge_for_eye * contrast, 4.0 / 3.0)));
 }
 
 // The greatest of a pixel's eight neighbours in the window.
@@ -315,10 +313,12 @@ std::vector<std::uint32_t> wanted_for_the_eye(const PixelSums& sums, std::span<c
   const std::vector<float> low = greatest_around(sums.window, std::span<const float>(darkness));
   std::vector<std::uint32_t> wanted = sums.samples;
   for (std::size_t p = 0; p < wanted.size(); ++p) {
-    if (double(around[p]) > most_scatter) wanted[p] *= double(around[p]) > most_of_eight ? 4U : 2U;
+    if (double(around[p]) > tuning::most_scatter)
+      wanted[p] *= double(around[p]) > tuning::most_of_eight ? 4U : 2U;
     if (wanted[p] == 0 || dimmest <= 0.0) continue;
     const double contrast = double(high[p] + low[p]) / std::max(double(high[p]), dimmest);
-    if (contrast > most_scatter) wanted[p] = std::max(wanted[p], samples_for_edge(contrast));
+    if (contrast > tuning::most_scatter)
+      wanted[p] = std::max(wanted[p], samples_for_edge(contrast));
   }
   return wanted;
 }

@@ -99,7 +99,6 @@ void shade_samples(const ShadingScene& shared, const CameraModel& camera,
 [[nodiscard]] std::vector<std::uint32_t> wanted_for_the_eye(const PixelSums& sums,
                                                             std::span<const float> scatter,
                                                             double dimmest);
-inline constexpr double dimmest_share = 0.05;  // of the picture's mean
 // Of all light together.
 [[nodiscard]] std::vector<float> scatter_of_samples(const PixelSums& sums, double dimmest);
 

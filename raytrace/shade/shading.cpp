@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "raytrace/light/footprint.h"
+#include "raytrace/tuning.h"
 #include "scenes/reflect/specular.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_cells.h"
@@ -16,16 +17,12 @@ namespace {
 using base::pi;
 using scenes::no_group;
 
-constexpr int roulette_depth = 3;       // from here on paths end by chance, without bias
-constexpr double most_survival = 0.95;  // even between perfect mirrors
-constexpr int lobe_rays = 4;            // per camera sample
-
 }  // namespace
 
 bool gathers_at(const scenes::Scene& scene, const scenes::Hit& hit, GatherRequest& request) {
   const std::uint32_t number = scene.triangles[hit.triangle].material;
   const scenes::Material& material = scene.materials[number];
-  const bool glossy = base::is_lit(material.specular) && material.shininess < sharp_lobe;
+  const bool glossy = base::is_lit(material.specular) && material.shininess < tuning::sharp_lobe;
   if (!(hit.front || material.two_sided) || !(base::is_lit(material.diffuse) || glossy))
     return false;
   const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
@@ -93,8 +90,8 @@ void PixelShader::add(std::size_t layer, std::size_t sample, Part part, const Rg
 void PixelShader::trace(const Ray& ray, const Rgb& weight, int depth, Seen seen,
                         std::uint64_t& counter) {
   Rgb kept = weight;
-  if (depth >= roulette_depth) {
-    const double survival = std::min(most_survival, base::max_component(weight));
+  if (depth >= tuning::roulette_depth) {
+    const double survival = std::min(tuning::most_survival, base::max_component(weight));
     if (rng_.next() >= survival) return;
     kept /= survival;
   }
@@ -248,12 +245,12 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
 
 void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
   const double n = surface.material.shininess;
-  if (n < sharp_lobe && has_points(depth) && read_lobe(surface, weight)) return;
+  if (n < tuning::sharp_lobe && has_points(depth) && read_lobe(surface, weight)) return;
   const Vec3 mirrored =
       2.0 * glm::dot(surface.view, surface.normal) * surface.normal - surface.view;
   const base::Frame3 frame = base::frame_around(mirrored);
   const Vec3 origin = surface.lifted();
-  const int count = depth == 0 ? lobe_rays : 1;
+  const int count = depth == 0 ? tuning::lobe_rays : 1;
   for (int k = 0; k < count; ++k) {
     // Density (n + 1) / (2 pi) cos^n alpha; L = integral L_in (k_s / pi) cos^n cos_theta.
     const double cos_alpha = std::pow(1.0 - rng_.next(), 1.0 / (n + 1.0));
@@ -265,7 +262,7 @@ void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
     const double seen = glm::dot(surface.view, surface.normal);
     const Rgb value = weight * surface.material.specular *
                       (scenes::lobe_weight(surface.material, seen, cosine) / count);
-    if (n >= sharp_lobe) {
+    if (n >= tuning::sharp_lobe) {
       trace({origin, direction}, value, depth + 1, Seen::ByLobe, rays_.lobe);
     } else {
       ++rays_.lobe;
@@ -289,7 +286,7 @@ void PixelShader::mirror_and_glass(const Ray& ray, const Surface& surface, const
       through = Rgb(0.0);
     }
   }
-  if (depth >= roulette_depth && base::is_lit(reflected) && base::is_lit(through)) {
+  if (depth >= tuning::roulette_depth && base::is_lit(reflected) && base::is_lit(through)) {
     // Deep paths take one way, or their number would grow without end.
     const double share = base::max_component(reflected) /
                          (base::max_component(reflected) + base::max_component(through));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "raytrace/shade/shading.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
 
@@ -11,14 +12,6 @@ using base::pi;
 
 namespace {
 
-// Gather rays of a camera sample that finds no gather point for its surface: a lens out of focus, a
-// wire thinner than a pixel.
-constexpr int rays_without_point = 2;
-// Of a pixel, the samples that read a point beside it instead: rays of a few would show as a lone
-// dark or coloured pixel. What that is off by goes to nothing with more samples.
-constexpr std::size_t samples_beside = 16;
-// And of one that was met by mirrors or glass.
-constexpr int rays_behind_mirror = 2;
 constexpr std::size_t most_shadow_rays = 256;  // that wait to be traced together
 
 }  // namespace
@@ -50,7 +43,8 @@ GatherField::Reading PixelShader::read_points(const Surface& surface, Gathered k
   const Sighting place{glm::vec3(seen - shared_.sighting_origin), glm::vec3(normal),
                        mirror_.has_value()};
   std::size_t own = field.find(x_, y_, place);
-  if (own == no_point && sample_ < samples_beside) own = field.find_beside(x_, y_, place, kind);
+  if (own == no_point && sample_ < tuning::samples_beside)
+    own = field.find_beside(x_, y_, place, kind);
   return own == no_point ? GatherField::Reading() : field.reading(x_, y_, place, own, kind);
 }
 
@@ -94,8 +88,8 @@ bool PixelShader::read_lobe(const Surface& surface, const Rgb& weight) {
 void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   const base::Frame3 frame = base::frame_around(surface.normal);
   const Vec3 origin = surface.lifted();
-  const int count = depth > 0       ? rays_behind_mirror
-                    : shared_.field ? rays_without_point
+  const int count = depth > 0       ? tuning::rays_behind_mirror
+                    : shared_.field ? tuning::rays_without_point
                                     : shared_.gather_rays;
   const bool shares = depth == 0 && !shared_.incoming.bright().empty();
   GatherRay ray;

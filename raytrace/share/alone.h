@@ -6,7 +6,7 @@
 //
 // So the noise that is likely tells where samples go: half the point's own, half that of as many
 // samples of any point of its region of the picture. It is not stated: where noise differs from
-// surface to surface, and samples with it, it would be too large (decision 0018).
+// surface to surface, and samples with it, it would be too large (docs/log/renderer.md).
 #pragma once
 
 #include <span>

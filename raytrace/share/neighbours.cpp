@@ -4,11 +4,12 @@
 
 #include "base/parallel.h"
 #include "raytrace/share/share.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
 namespace {
 
-constexpr std::size_t mask_levels = share_levels + window_blurs - 1;
+constexpr std::size_t mask_levels = share_levels + tuning::window_blurs - 1;
 constexpr std::size_t taps = 5;
 constexpr std::array<float, taps> spline = {1.0F / 16, 1.0F / 4, 3.0F / 8, 1.0F / 4, 1.0F / 16};
 // The five of a point's row, then those of its column.

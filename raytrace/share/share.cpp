@@ -6,6 +6,7 @@
 #include "base/numbers/random.h"
 #include "base/parallel.h"
 #include "raytrace/share/signals.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -14,9 +15,6 @@ namespace {
 // window steps over, of independent values on an endless plane: squares of normal details are
 // correlated so.
 constexpr std::array<float, share_levels> alike = {1.15F, 1.10F, 1.13F, 1.14F, 1.14F};
-// Of all but single pixels' details two blurs are enough: a third one, between points as far apart
-// as the details, takes a fifth of the time of sharing and saves no rays, though it would make
-// windows of three times as many independent squares.
 constexpr std::size_t first_blur(std::size_t level) { return level > 0 ? 1 : 0; }
 constexpr std::size_t layers_at_once = 4;
 constexpr std::size_t points_at_once = 1024;
@@ -78,7 +76,7 @@ class Sharer {
   }
 
   void blur_squares(std::size_t level) {
-    for (std::size_t k = first_blur(level); k < window_blurs; ++k) {
+    for (std::size_t k = first_blur(level); k < tuning::window_blurs; ++k) {
       neighbours_.blur(level + k, squares_, nullptr, blurred_);
       squares_.swap(blurred_);
     }
@@ -90,12 +88,13 @@ class Sharer {
 
   // Means, and fields of their noise.
   [[nodiscard]] Planes means_and_noise() const {
-    Planes values = neighbours_.planes(1 + noise_fields);
+    Planes values = neighbours_.planes(1 + tuning::noise_fields);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
         values[0][p] = estimate_.mean(p);
         const float noise = std::sqrt(estimate_.noise(p));
-        for (std::size_t k = 0; k < noise_fields; ++k) values[1 + k][p] = sign(p, k) * noise;
+        for (std::size_t k = 0; k < tuning::noise_fields; ++k)
+          values[1 + k][p] = sign(p, k) * noise;
       }
     });
     return values;
@@ -144,15 +143,17 @@ class Sharer {
   // Squares over what noise is expected of the samples there: of the values, the mean of those of
   // the fields of noise, and what weight this gives each.
   void take_squares(const Planes& values) {
-    if (squares_.empty()) squares_ = neighbours_.planes(all_ ? Scatter : Scatter + scatter_fields);
+    if (squares_.empty())
+      squares_ = neighbours_.planes(all_ ? Scatter : Scatter + tuning::scatter_fields);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
         const float weight = expected_[p] > 0.0F ? 1.0F / expected_[p] : 0.0F;
         float noise = 0.0F;
-        for (std::size_t k = 1; k <= noise_fields; ++k) noise += values[k][p] * values[k][p];
+        for (std::size_t k = 1; k <= tuning::noise_fields; ++k)
+          noise += values[k][p] * values[k][p];
         squares_[Weight][p] = weight;
         squares_[Energy][p] = weight * values[0][p] * values[0][p];
-        squares_[NoiseSquare][p] = weight * noise / float(noise_fields);
+        squares_[NoiseSquare][p] = weight * noise / float(tuning::noise_fields);
       }
     });
   }
@@ -163,10 +164,10 @@ class Sharer {
   void take_scatter(std::size_t level) {
     const float root = std::sqrt(alike[level]);
     for_all([&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = 0; k < scatter_fields; ++k) {
+      for (std::size_t k = 0; k < tuning::scatter_fields; ++k) {
         for (std::size_t p = begin; p < end; ++p) {
           const float off = squares_[Energy][p] - squares_[NoiseSquare][p];
-          squares_[Scatter + k][p] = root * sign(p, noise_fields + k) * off;
+          squares_[Scatter + k][p] = root * sign(p, tuning::noise_fields + k) * off;
         }
       }
     });

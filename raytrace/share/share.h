@@ -40,6 +40,7 @@
 #include "base/ranks/ranks.h"
 #include "base/units.h"
 #include "raytrace/camera/camera.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
 
@@ -59,8 +60,6 @@ struct GatherPoint {
 };
 
 inline constexpr std::size_t share_levels = 5;
-// Mean squares are taken over blurs, the last of which reaches four times as far as the detail.
-inline constexpr std::size_t window_blurs = 3;
 
 // Sums of samples at every point.
 struct Estimate {
@@ -195,10 +194,9 @@ enum class Keep { AsTold, All };
 // The share of a detail of signal s and noise q that is kept, mean squares; few: 1 / N. Noise that
 // is found by chance looks like signal half of the time: only what is well above it counts, the
 // more so the fewer details tell s, which is off by sqrt(2 / N) q by chance. Both shares of q are
-// what cost least on the payload bay (decision 0018).
+// what cost least on the payload bay (docs/log/renderer.md).
 [[nodiscard]] inline float kept_share(float s, float q, float few) {
-  constexpr float doubt = 0.3F, doubt_of_chance = 0.7F;
-  const float sure = s - (doubt + doubt_of_chance * std::sqrt(2.0F * few)) * q;
+  const float sure = s - (tuning::doubt + tuning::doubt_of_chance * std::sqrt(2.0F * few)) * q;
   return sure > 0.0F ? sure / (sure + q) : 0.0F;
 }
 
@@ -209,10 +207,9 @@ enum class Keep { AsTold, All };
 [[nodiscard]] inline bool same_surface(const glm::vec3& from, const glm::vec3& normal,
                                        const glm::vec3& to, const glm::vec3& other_normal,
                                        float slack_m) {
-  constexpr float least_cosine = 0.906F, bend = 0.22F;
-  if (glm::dot(normal, other_normal) < least_cosine) return false;
+  if (glm::dot(normal, other_normal) < tuning::least_surface_cosine) return false;
   const glm::vec3 way = to - from;
-  const float reach = bend * glm::length(way) + slack_m;
+  const float reach = tuning::most_surface_slope * glm::length(way) + slack_m;
   return std::abs(glm::dot(way, normal)) <= reach && std::abs(glm::dot(way, other_normal)) <= reach;
 }
 

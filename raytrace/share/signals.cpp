@@ -5,6 +5,7 @@
 
 #include "base/numbers/random.h"
 #include "base/parallel.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -54,7 +55,7 @@ std::vector<std::uint8_t> draw_signs(const Neighbours& neighbours, const Estimat
   });
   const auto sampled = [](float n) { return n > 0.0F; };
   if (std::all_of(samples.begin(), samples.begin() + std::ptrdiff_t(points), sampled)) return signs;
-  constexpr std::size_t fields = noise_fields + scatter_fields;
+  constexpr std::size_t fields = tuning::noise_fields + tuning::scatter_fields;
   Neighbours::Planes own = neighbours.planes(fields), around;
   for_all([&](std::size_t p) {
     for (std::size_t k = 0; k < fields; ++k) own[k][p] = sign_of(signs[p], k);
@@ -88,11 +89,11 @@ void find_signals(std::size_t level, const Neighbours::Planes& squares,
           noise[p] = of_noise[p] * scale;
           few[p] = 0.0F;
         }
-        for (std::size_t k = 0; k < scatter_fields; ++k) {
+        for (std::size_t k = 0; k < tuning::scatter_fields; ++k) {
           const float* const scatter = squares[Scatter + k].data();
           for (std::size_t p = begin; p < end; ++p) {
             const float off = noise[p] > 0.0F ? scatter[p] / of_noise[p] : 0.0F;
-            few[p] += off * off / float(scatter_fields);
+            few[p] += off * off / float(tuning::scatter_fields);
           }
         }
         Spread part;

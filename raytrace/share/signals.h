@@ -8,9 +8,6 @@
 
 namespace earthshine::raytrace {
 
-// Independent fields of noise, and of what squares are off by.
-inline constexpr std::size_t noise_fields = 4, scatter_fields = 3;
-
 // Planes of means over each point's window: <d^2 / e>, <n^2 / e>, <1 / e>, and from the last on the
 // first less the second with random signs.
 enum Square : std::size_t { Energy, NoiseSquare, Weight, Scatter };

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "raytrace/share/share.h"
+#include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
 
@@ -28,15 +29,14 @@ struct Stray {
 inline constexpr std::uint32_t no_base = 0xffffffffU;
 
 // Parts of the picture, over which strays are held to be alike, row by row.
-inline constexpr std::size_t region_px = 8;
 [[nodiscard]] inline std::uint32_t region_of(std::size_t pixel, std::size_t columns) {
-  const std::size_t x = pixel % columns / region_px, y = pixel / columns / region_px;
-  return static_cast<std::uint32_t>(y * (columns / region_px + 1) + x);
+  const std::size_t x = pixel % columns / tuning::region_px,
+                    y = pixel / columns / tuning::region_px;
+  return static_cast<std::uint32_t>(y * (columns / tuning::region_px + 1) + x);
 }
 
 // Strays that lie side by side on one surface, each among its own: the last ones of some pixels.
 struct Peers {
-  static constexpr int reach = 3;  // pixels across and down
   std::span<const Stray> strays;
   std::span<const std::uint32_t> first;  // of a pixel, and behind the last
   std::span<const std::uint64_t> masks;  // of a stray: bits of the pixels about it, row by row
@@ -45,10 +45,11 @@ struct Peers {
   void each(std::size_t stray, const Visit& visit) const {
     std::uint64_t bits = masks[stray];
     for (; bits != 0; bits &= bits - 1) {
-      constexpr int width = 2 * reach + 1;
+      constexpr int width = 2 * tuning::mirror_reach_px + 1;
       const int bit = std::countr_zero(bits);
       const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(strays[stray].pixel) +
-                                (bit / width - reach) * columns + bit % width - reach;
+                                (bit / width - tuning::mirror_reach_px) * columns + bit % width -
+                                tuning::mirror_reach_px;
       visit(std::size_t{first[static_cast<std::size_t>(at) + 1]} - 1);
     }
   }

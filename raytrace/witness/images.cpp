@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/numbers/sobol_set.h"
+#include "raytrace/tuning.h"
 #include "scenes/effects/shining.h"
 #include "scenes/light/narrow_beams.h"
 #include "scenes/reflect/specular.h"
@@ -17,12 +18,7 @@ namespace {
 
 using base::pi;
 
-constexpr double large_px2 = 1.0;  // from there on the first few samples meet it
-constexpr double far_m = 1e9;      // stands for infinity
-// Highlights of blunter lobes are larger than the bodies that show them are curved.
-constexpr double least_shininess = 50.0;
-constexpr double most_deviations2 = 16.0;  // of a lobe, beyond which it is dark
-constexpr double most_pairs = 4e6;         // of facets and emitting triangles
+constexpr double far_m = 1e9;  // stands for infinity
 constexpr std::size_t stop_asked_after = 1024;
 constexpr int facet_points = 64;                     // that tell how much of it shows a source
 constexpr double least_share = 0.25 / facet_points;  // of a facet whose nearest point alone does
@@ -79,7 +75,7 @@ class ImageFinder {
   void add_visible(const Facet& facet, const Source& source, const Vec3& at, Spot spot,
                    SpotMap& spots);
   [[nodiscard]] bool counts(const Spot& spot) const {
-    return spot.area_px2 < large_px2 && spot.area_px2 * spot.luminance > scene_.least &&
+    return spot.area_px2 < tuning::large_px2 && spot.area_px2 * spot.luminance > scene_.least &&
            images_.contains(spot);
   }
   [[nodiscard]] double px2_per_sr(const Vec3& direction) const {
@@ -175,7 +171,7 @@ void ImageFinder::add_straight() {
   for (const Image& image : images) {
     if (++asked % stop_asked_after == 0 && scene_.stops()) return;
     // A fine mesh has millions that are small and together large.
-    if (sharp.most_around(image.spot.film) >= large_px2) continue;
+    if (sharp.most_around(image.spot.film) >= tuning::large_px2) continue;
     Spot spot = image.spot;
     spot.area_px2 *= visible_share(image.source);
     if (spot.area_px2 > 0.0) images_.add(spot);
@@ -219,7 +215,8 @@ void ImageFinder::add_reflections() {
     const scenes::Material& material = scene.materials[scene.triangles[t].material];
     Facet facet;
     facet.is_mirror = base::is_lit(material.mirror);
-    facet.is_glossy = base::is_lit(material.specular) && material.shininess >= least_shininess;
+    facet.is_glossy =
+        base::is_lit(material.specular) && material.shininess >= tuning::least_shininess;
     if (!facet.is_mirror && !facet.is_glossy) continue;
     facet.corners = scenes::corners_of(scene, t);
     const Vec3 normal = facet.corners.normal();
@@ -235,7 +232,8 @@ void ImageFinder::add_reflections() {
     facet.material = &material;
     facets.push_back(facet);
   }
-  const bool too_many = double(facets.size()) * double(scene_.sources().size()) > most_pairs;
+  const bool too_many =
+      double(facets.size()) * double(scene_.sources().size()) > tuning::most_pairs;
   std::size_t asked = 0;
   for (const Facet& facet : facets) {
     if (++asked % stop_asked_after == 0 && scene_.stops()) return;
@@ -308,7 +306,7 @@ void ImageFinder::add_highlight(const Facet& facet, const Source& source, const 
   const double variance = lobe_variance + 0.25 * angle * angle;
   const double off2 = 2.0 * (1.0 - glm::dot(in, mirrored));  // of the angle, squared
   const double cosine = glm::dot(in, facet.normal);
-  if (off2 > most_deviations2 * variance || cosine <= 0.0) return;
+  if (off2 > tuning::most_deviations2 * variance || cosine <= 0.0) return;
   const double lobe = lobe_variance / variance * std::exp(-0.5 * off2 / variance) *
                       scenes::lobe_at(*facet.material, 1.0, cosine, glm::dot(out, facet.normal));
   Spot spot = scene_.spot_at(at, 0.0);

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "raytrace/tuning.h"
 #include "raytrace/witness/strip_width.h"
 #include "raytrace/witness/strips.h"
 #include "scenes/reflect/specular.h"
@@ -79,10 +80,6 @@ class LightStrips {
   }
 
  private:
-  static constexpr int most_panes = 8, most_parts = 64;
-  static constexpr double part_px = 0.5;
-  static constexpr double widest = 0.05;  // of a source, over its distance from the scene
-
   struct Receiver {
     Vec3 position{0.0}, normal{0.0};  // normal: on the side of the light
     const scenes::Material* material = nullptr;
@@ -93,7 +90,7 @@ class LightStrips {
     for (const WitnessSource& source : scene_.sources()) {
       // Emitting triangles light surfaces as parts of something larger.
       if (source.lamp == nullptr && !source.is_distant) continue;
-      if (!source.is_distant && source.radius_m > widest * diagonal_m_) continue;
+      if (!source.is_distant && source.radius_m > tuning::widest * diagonal_m_) continue;
       views_.push_back({&source, nullptr, scenes::no_mirror, source.is_distant, source.middle});
       std::uint32_t number = 0;
       for (const scenes::FlatMirror& mirror : shared_.query.ways().mirrors()) {
@@ -120,7 +117,7 @@ class LightStrips {
       if (fall <= 0.0 || height <= 0.0) return std::nullopt;
       from = point - height / fall * direction + view.mirror->offset_m * view.mirror->normal;
     }
-    for (int k = 0; k < most_panes; ++k) {
+    for (int k = 0; k < tuning::most_panes; ++k) {
       const scenes::Hit hit = scene_.closest(from, direction);
       if (hit.missed()) return std::nullopt;
       const scenes::Material& material = scene.materials[scene.triangles[hit.triangle].material];
@@ -182,8 +179,9 @@ class LightStrips {
     for (const double side : {-1.0, 1.0}) {
       const Strip strip{view, at, side * glm::normalize(across), (to - from) * whole};
       const double length_px = probe(strip);
-      if (is_part || length_px <= 1.5 * part_px) continue;
-      const int parts = std::min(most_parts, static_cast<int>(std::ceil(length_px / part_px)));
+      if (is_part || length_px <= 1.5 * tuning::part_px) continue;
+      const int parts =
+          std::min(tuning::most_parts, static_cast<int>(std::ceil(length_px / tuning::part_px)));
       for (int k = 0; k < parts; ++k) {
         const double step = (to - from) / parts;
         const double start = from + k * step;
@@ -229,7 +227,7 @@ class LightStrips {
              0.3 * glm::length(expected - first->position) + 8.0 * first->offset_m;
     };
     if (is_same(-beside_m)) return 0.0;
-    const double wide_m = wide_px / px_per_m;
+    const double wide_m = tuning::wide_px / px_per_m;
     auto width = width_of(wide_m, beside_m, is_same);
     double off = width ? 0.5 * *width : 0.0;
     if (!width) {  // the shadow of something thin
@@ -240,7 +238,7 @@ class LightStrips {
     const glm::dvec2 along = film(start + strip.step) - film_start;
     const glm::dvec2 down = film(start + *width * strip.across) - film_start;
     const double length_px = glm::length(along);
-    if (!adds && length_px > 1.5 * part_px) return length_px;
+    if (!adds && length_px > 1.5 * tuning::part_px) return length_px;
     Spot spot = scene_.spot_at(on_plane(strip.at + off * strip.across), 0.0);
     spot.radius_px = 0.5 * std::max(length_px, glm::length(down));
     spot.area_px2 = share_of_edge * std::abs(cross(along, down));

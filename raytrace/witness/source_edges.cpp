@@ -6,11 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "raytrace/tuning.h"
+
 namespace earthshine::raytrace {
 namespace {
-
-constexpr std::uint32_t fewest = 64, most = 1024;
-constexpr double least_contrast = 1.0 / 3.0;
 
 // A pixel's mean and the standard deviation of its samples.
 struct Look {
@@ -27,10 +26,10 @@ Look look_at(const PixelSums& sums, std::size_t pixel) {
 }  // namespace
 
 std::uint32_t samples_for_edges(double error) {
-  if (error <= 0.0) return fewest;
+  if (error <= 0.0) return tuning::fewest_at_source;
   const double wanted = std::pow(error_of_edge / error, 4.0 / 3.0);
-  return std::bit_ceil(
-      static_cast<std::uint32_t>(std::clamp(wanted, double(fewest), double(most))));
+  return std::bit_ceil(static_cast<std::uint32_t>(
+      std::clamp(wanted, double(tuning::fewest_at_source), double(tuning::most_at_source))));
 }
 
 std::vector<std::uint32_t> wanted_for_source_edges(const PixelSums& sums, std::uint32_t samples,
@@ -53,7 +52,7 @@ std::vector<std::uint32_t> wanted_for_source_edges(const PixelSums& sums, std::u
         scatter = std::max(scatter, look.deviation);
       }
     }
-    return source && std::max(high - low, scatter) > least_contrast * high;
+    return source && std::max(high - low, scatter) > tuning::least_contrast * high;
   };
   for (int y = window.y; y < window.y + window.rows; ++y) {
     for (int x = window.x; x < window.x + window.columns; ++x) {
@@ -65,7 +64,7 @@ std::vector<std::uint32_t> wanted_for_source_edges(const PixelSums& sums, std::u
     for (const std::size_t p : edges) sum += each > sums.samples[p] ? each - sums.samples[p] : 0U;
     return sum;
   };
-  while (samples > fewest && added(samples) > most_added) samples /= 2;
+  while (samples > tuning::fewest_at_source && added(samples) > most_added) samples /= 2;
   std::vector<std::uint32_t> wanted = sums.samples;
   for (const std::size_t p : edges) wanted[p] = std::max(wanted[p], samples);
   return wanted;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "raytrace/tuning.h"
 #include "raytrace/witness/strip_width.h"
 #include "raytrace/witness/strips.h"
 
@@ -26,16 +27,14 @@ class SourceStrips {
       if (edge.is_outline(camera_.position, false)) add_line(edge.a, edge.b);
     }
     for (const WitnessSource& source : scene_.sources()) add_outline(source);
-    const std::size_t stride = lines_.size() / most_probes + 1;
+    const std::size_t stride = lines_.size() / tuning::most_probes + 1;
     for (std::size_t k = 0; k < lines_.size() && !scene_.stops(); k += stride) {
       probe(lines_[k], static_cast<double>(stride) * lines_[k].length_px);
     }
   }
 
  private:
-  static constexpr double step_px = 0.5, beside_px = 5e-4, far_m = 1e9;
-  static constexpr std::size_t most_probes = 16384;
-  static constexpr int round_corners = 32, most_bounces = 8;
+  static constexpr double far_m = 1e9;
   struct Line {
     glm::dvec2 at, along;  // px; unit
     double length_px;
@@ -105,7 +104,7 @@ class SourceStrips {
     if (from >= to || !(length > 0.0)) return;
     const glm::dvec2 along = way / length;
     const double first = from * length, last = to * length;
-    const int steps = std::max(1, static_cast<int>(std::lround((last - first) / step_px)));
+    const int steps = std::max(1, static_cast<int>(std::lround((last - first) / tuning::step_px)));
     for (int k = 0; k < steps; ++k) {
       const glm::dvec2 at = a + (first + (k + 0.5) * (last - first) / steps) * along;
       const int x = std::min(static_cast<int>(at.x), camera_.columns - 1);
@@ -129,8 +128,8 @@ class SourceStrips {
       const base::Frame3 frame = base::frame_around(is_sun ? source.middle : source.normal);
       const Vec3 middle = is_sun ? camera_.position + far_m * source.middle : source.middle;
       const double radius = is_sun ? far_m * std::tan(source.angle_rad) : source.radius_m;
-      for (int k = 0; k < round_corners; ++k) {
-        const double phi = 2.0 * pi * k / round_corners;
+      for (int k = 0; k < tuning::round_corners; ++k) {
+        const double phi = 2.0 * pi * k / tuning::round_corners;
         corners.push_back(
             middle + radius * (std::cos(phi) * frame.tangent + std::sin(phi) * frame.bitangent));
       }
@@ -143,16 +142,16 @@ class SourceStrips {
   void probe(const Line& line, double step) {
     for (const double side : {-1.0, 1.0}) {
       const glm::dvec2 across = side * glm::dvec2(-line.along.y, line.along.x);
-      const double lit = luminance(line.at + beside_px * across);
+      const double lit = luminance(line.at + tuning::beside_px * across);
       if (lit <= 0.0) continue;
       const auto is_lit = [&](double off) { return luminance(line.at + off * across) > 0.3 * lit; };
-      if (is_lit(-beside_px)) continue;
-      if (const auto width = width_of(wide_px, beside_px, is_lit)) {
+      if (is_lit(-tuning::beside_px)) continue;
+      if (const auto width = width_of(tuning::wide_px, tuning::beside_px, is_lit)) {
         add(line.at + 0.5 * *width * across, *width, step, lit);
       }
       // Something thin before the source.
       const auto is_dark = [&](double off) { return !is_lit(-off); };
-      if (const auto width = width_of(wide_px, beside_px, is_dark)) {
+      if (const auto width = width_of(tuning::wide_px, tuning::beside_px, is_dark)) {
         add(line.at - 0.5 * *width * across, *width, step, lit);
       }
     }
@@ -173,7 +172,7 @@ class SourceStrips {
     Vec3 from = camera_.position;
     Vec3 direction = camera_.direction_from(from, film.x, film.y);
     double share = 1.0;
-    for (int k = 0; k < most_bounces && share > 0.0; ++k) {
+    for (int k = 0; k < tuning::most_bounces && share > 0.0; ++k) {
       const scenes::Hit hit = scene_.closest(from, direction);
       const double reach = hit.missed() ? std::numeric_limits<double>::infinity() : hit.t;
       if (const auto lamp = shared_.lights.seen_lamp(from, direction, reach)) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raytrace/tuning.h"
+
 namespace earthshine::raytrace {
 
 SpotMap::SpotMap(const CameraModel& camera, double filter_px)
@@ -30,7 +32,6 @@ double SpotMap::most_around(const glm::dvec2& film) const {
 }
 
 void SpotMap::add(const Spot& spot) {
-  constexpr double least_part = 1.0 / 32.0;  // of the largest that a pixel has, along an axis
   const double half = std::max(spot.radius_px + spot.blur_px, 1e-6), reach = 0.5 * filter_px_;
   const double largest = std::min(1.0, reach / half);
   // Share of the spot within the filter's support around a pixel's centre, along an axis.
@@ -38,7 +39,7 @@ void SpotMap::add(const Spot& spot) {
     const double low = std::max(film - half, pixel + 0.5 - reach);
     const double high = std::min(film + half, pixel + 0.5 + reach);
     const double share = std::max(0.0, high - low) / (2.0 * half);
-    return share < least_part * largest ? 0.0 : share / filter_px_;
+    return share < tuning::least_part * largest ? 0.0 : share / filter_px_;
   };
   const auto first = [&](double film, int count) {
     return static_cast<int>(std::clamp(std::floor(film - half - reach), 0.0, double(count)));

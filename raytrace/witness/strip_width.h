@@ -5,12 +5,10 @@
 #include <array>
 #include <optional>
 
+#include "raytrace/tuning.h"
+
 namespace earthshine::raytrace {
 
-inline constexpr double wide_px = 1.0;  // from there on a strip is none
-// Where a strip may end, as shares of wide_px; then bisected.
-inline constexpr std::array<double, 4> strip_places = {1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0, 1.0};
-inline constexpr int strip_bisections = 4;
 // Both edges of a strip report it.
 inline constexpr double share_of_edge = 0.5;
 
@@ -18,14 +16,14 @@ inline constexpr double share_of_edge = 0.5;
 template <class IsSame>
 std::optional<double> width_of(double wide, double least, const IsSame& is_same) {
   double low = least;
-  for (const double place : strip_places) {
+  for (const double place : tuning::strip_places) {
     double high = place * wide;
     if (high <= low) continue;
     if (is_same(high)) {
       low = high;
       continue;
     }
-    for (int k = 0; k < strip_bisections; ++k) {
+    for (int k = 0; k < tuning::strip_bisections; ++k) {
       const double middle = 0.5 * (low + high);
       (is_same(middle) ? low : high) = middle;
     }

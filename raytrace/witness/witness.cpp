@@ -6,27 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "raytrace/tuning.h"
 #include "raytrace/witness/images.h"
 #include "raytrace/witness/source_edges.h"
 #include "raytrace/witness/strips.h"
 
 namespace earthshine::raytrace {
-namespace {
-
-// Samples that should meet a spot: between these, as the wanted error needs.
-constexpr double fewest_hits = 16.0, most_hits = 64.0;
-constexpr double noise_share = 0.25;        // of the wanted error, that spots may leave
-constexpr double few_samples = 4.0;         // that a pixel has without the witness
-constexpr double least_of_spot = 0.01;      // of the light that counts in a pixel
-constexpr double source_share = 1.0 / 3.0;  // of the wanted error, at a source's rim
-constexpr double most_coverage = 0.999;     // fuller pixels are no spots
-constexpr double most_for_one = 65536.0, least_budget = 1048576.0, budget_per_pixel = 4.0;
-// Samples that find less than this share of the witness's light have not found it: the witness
-// knows a spot's light to a factor of a few, where surfaces hide a part of it.
-constexpr double found_share = 0.125;
-
-}  // namespace
-
 Witness::Witness(const ShadingScene& shared, const CameraModel& camera,
                  const WitnessOptions& options)
     : camera_(camera),
@@ -34,7 +19,7 @@ Witness::Witness(const ShadingScene& shared, const CameraModel& camera,
       images_(camera, shared.filter.width_px()),
       slivers_(images_),
       lit_(images_) {
-  WitnessScene scene(shared, camera, least_of_spot * options.error * options.luminance,
+  WitnessScene scene(shared, camera, tuning::least_of_spot * options.error * options.luminance,
                      options.stop);
   add_images(scene, images_, lit_);
   if (!options.images_alone) {
@@ -46,15 +31,18 @@ Witness::Witness(const ShadingScene& shared, const CameraModel& camera,
   choose();
 }
 
-double Witness::allowed() const { return noise_share * options_.error * options_.luminance; }
+double Witness::allowed() const {
+  return tuning::noise_share * options_.error * options_.luminance;
+}
 
 // Samples that miss a spot leave all of its light out. One that meets it by chance makes the pixel
 // far too bright, which weighs no more than error_bright times the mean.
 double Witness::risk(const SpotMap::Pixel& pixel) const {
   const double mean = options_.luminance;
   const double missed = error_weight(pixel.light, mean) * pixel.light;
-  const double met = std::min(error_bright * mean, pixel.square / pixel.light / few_samples);
-  return missed * missed + few_samples * pixel.coverage() * met * met;
+  const double met =
+      std::min(error_bright * mean, pixel.square / pixel.light / tuning::few_samples);
+  return missed * missed + tuning::few_samples * pixel.coverage() * met * met;
 }
 
 void Witness::choose() {
@@ -75,30 +63,31 @@ void Witness::choose() {
 
 double Witness::samples_of_source(const SpotMap::Pixel& pixel) const {
   const double coverage = pixel.coverage();
-  if (pixel.light <= 0.0 || coverage >= most_coverage) return 0.0;
+  if (pixel.light <= 0.0 || coverage >= tuning::most_coverage) return 0.0;
   const double weight = error_weight(pixel.light, options_.luminance);
   if (weight * pixel.light < allowed()) return 0.0;
-  const double error = source_share * options_.error;
+  const double error = tuning::source_share * options_.error;
   const double rim_px = std::min(1.0, 2.0 * std::sqrt(base::pi * coverage));
   const double for_rim =
       error > 0.0 ? std::pow(error_of_edge * std::sqrt(rim_px) / (coverage * error), 4.0 / 3.0)
                   : 0.0;
   // Sobol points are most even in powers of two.
-  const double samples = std::min(most_for_one, std::max(most_hits / coverage, for_rim));
+  const double samples =
+      std::min(tuning::most_for_one, std::max(tuning::most_hits / coverage, for_rim));
   return std::bit_ceil(static_cast<std::uint32_t>(samples));
 }
 
 double Witness::samples_of_lit(const SpotMap::Pixel& pixel) const {
   const double coverage = pixel.coverage();
-  if (pixel.light <= 0.0 || coverage >= most_coverage) return 0.0;
-  const double most = std::min(most_for_one, most_hits / coverage);
+  if (pixel.light <= 0.0 || coverage >= tuning::most_coverage) return 0.0;
+  const double most = std::min(tuning::most_for_one, tuning::most_hits / coverage);
   if (allowed() <= 0.0) return most;
   if (risk(pixel) < least_risk_) return 0.0;
   const double share = double(camera_.columns) * camera_.rows / chosen_;  // of the error allowed
   const double deviation = error_weight(pixel.light, options_.luminance) *
                            std::sqrt(pixel.square - pixel.light * pixel.light);
   const double needed = std::pow(deviation / allowed(), 2.0) / share;
-  return std::min(most, std::max(needed, fewest_hits / coverage));
+  return std::min(most, std::max(needed, tuning::fewest_hits / coverage));
 }
 
 Witness::Expected Witness::expected(int x, int y) const {
@@ -123,7 +112,8 @@ std::vector<std::uint32_t> Witness::wanted(const PixelSums& sums) const {
   const double pixels = double(camera_.columns) * double(camera_.rows);
   const double bound =
       options_.most_samples > 0.0 ? options_.most_samples : std::numeric_limits<double>::infinity();
-  const double most = std::min(bound, std::max(least_budget, budget_per_pixel * pixels));
+  const double most =
+      std::min(bound, std::max(tuning::witness_samples, tuning::witness_per_pixel * pixels));
   const double share = std::min(1.0, most / std::max(all, 1.0));
   std::vector<std::uint32_t> wanted = sums.samples;
   if (!options_.images_alone) {
@@ -165,7 +155,7 @@ std::vector<float> Witness::unexplained(const PixelSums& sums) const {
           found += sums.luminance[q] / std::max(1U, sums.samples[q]);
         }
       }
-      if (found >= found_share * light) continue;
+      if (found >= tuning::found_share * light) continue;
       missing.resize(sums.samples.size(), 0.0F);
       missing[window.index(x, y)] = static_cast<float>(light - found);
     }

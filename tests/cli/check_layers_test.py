@@ -45,6 +45,11 @@ class CheckLayers(unittest.TestCase):
         self.assertEqual(self.outcome({"radiosity/a.cpp": LICENCE + '#include "radiosity/patches/split.h"\n'}),
                          (0, ""))
 
+    def test_every_room_may_include_the_constants_of_its_floor(self):
+        text = LICENCE + '#include "raytrace/tuning.h"\n'
+        self.assertEqual(self.outcome({"raytrace/share/a.cpp": text}), (0, ""))
+        self.assertEqual(self.outcome({"scenes/a.cpp": text})[0], 1)
+
     def test_unknown_room(self):
         self.faulty("scenes/attic/a.cpp", "", "scenes has no room attic; its rooms are")
         self.faulty("tests/scenes/attic/a_test.cpp", "", "scenes has no room attic; its rooms are")

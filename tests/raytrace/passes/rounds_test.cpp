@@ -79,7 +79,7 @@ TEST(Rounds, GrowthIsThatOfThePlanAndBeyondItOfTheSquare) {
   const double so_far = spent(sums, nullptr, {});
   const double half = 0.5 * std::sqrt(planner.squared_error());
   const auto growth = [&](double aimed) {
-    return Rounds(planner.doubt() * aimed / planned_share).growth(planner, so_far);
+    return Rounds(planner.doubt() * aimed / tuning::planned_share).growth(planner, so_far);
   };
   EXPECT_NEAR(growth(half), 4.0, 0.02);
   EXPECT_NEAR(growth(0.5 * half), 16.0, 0.1);
@@ -137,7 +137,7 @@ TEST(Rounds, OneGoesToAQuarterOfTheSquaredError) {
   const double half = 0.5 * std::sqrt(planner.squared_error());
   for (const double aimed : {half, 0.1 * half}) {
     const auto plan =
-        Rounds(planner.doubt() * aimed / planned_share).next(planner, so_far, no_limit);
+        Rounds(planner.doubt() * aimed / tuning::planned_share).next(planner, so_far, no_limit);
     ASSERT_TRUE(plan.has_value());
     EXPECT_NEAR(plan->cost, 3.0 * so_far, 0.1 * so_far);
   }

@@ -6,6 +6,7 @@
 
 #include "raytrace/render.h"
 #include "raytrace/shade/pixel_sums.h"
+#include "raytrace/tuning.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::raytrace {
@@ -45,7 +46,7 @@ PixelSums dim_and_bright(double dim) {
 }
 
 std::vector<std::uint32_t> wanted_by_eye(const PixelSums& sums) {
-  const double dimmest = dimmest_share * sums.mean_luminance();
+  const double dimmest = tuning::dimmest_share * sums.mean_luminance();
   return wanted_for_the_eye(sums, scatter_of_samples(sums, dimmest), dimmest);
 }
 

@@ -44,7 +44,7 @@ TEST(Neighbours, MeansAreThoseOfTheDoubleSum) {
     const auto is_there = [&](int x, int y) {
       return x >= 0 && y >= 0 && x < columns && y < rows && points[window.index(x, y)].reach_m > 0;
     };
-    for (std::size_t level = 0; level < share_levels + window_blurs - 1; ++level) {
+    for (std::size_t level = 0; level < share_levels + tuning::window_blurs - 1; ++level) {
       for (const bool weighted : {false, true}) {
         neighbours.blur(level, values, weighted ? &weight : nullptr, means);
         const int step = 1 << level;
