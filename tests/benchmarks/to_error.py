@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """CPU seconds to a true error, beside those of the program's own path tracer. Prints a table as Markdown.
 
-    to_error.py PROGRAM [--scene NAME]... [--camera C]... [--size 256x256] [--errors 0.05,0.02] [--paths 512]
+    to_error.py PROGRAM [--scene SCENE.toml]... [--camera C]... [--size 256x256] [--errors 0.05,0.02] [--paths 512]
                         [--references 2] [--cache DIR]
 
 Truth: path-traced pictures of independent noise (two, or more for small errors of noisy scenes), of all light paths (error_truth.py), where a pixel's centre shows a
@@ -22,7 +22,7 @@ TOP = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP / "tests" / "validation"))
 import error_truth  # noqa: E402
 
-SCENES = ("night-lamps", "day-sun", "day-earthshine")
+SCENES = [TOP / "scenes/library/sts46" / f"{name}.toml" for name in ("night-lamps", "day-sun", "day-earthshine")]
 FIRST_SEED = 11  # of the references
 TIMED = 16  # of so many paths one, for the path tracer's seconds
 
@@ -39,15 +39,15 @@ def run(*words):
 
 def trace_paths(call, scene, camera, paths, seed, picture):
     """CPU seconds."""
-    return run(call.program, "render", TOP / "scenes/library/sts46" / f"{scene}.toml", "--camera", camera, "--size", call.size,
+    return run(call.program, "render", scene, "--camera", camera, "--size", call.size,
                "--indirect", "paths", "--set", f"quality.gather_rays={paths}", "--seed", seed, "-q", "-o", picture)[1]
 
 
 def shows_surface(call, scene, camera):
     """Of every pixel: 1 if its centre shows a surface, 0 if it shows the sky."""
-    picture = call.cache / f"{scene}-{camera}-{call.size}-objects.exr"
+    picture = call.cache / f"{scene.stem}-{camera}-{call.size}-objects.exr"
     if not picture.exists():
-        run(call.program, "render", TOP / "scenes/library/sts46" / f"{scene}.toml", "--camera", camera, "--size", call.size,
+        run(call.program, "render", scene, "--camera", camera, "--size", call.size,
             "--indirect", "none", "--no-error", "--aov", "object", "-q", "-o", picture)
     return [float(thing >= 0) for thing in error_truth.picture(picture, "object")[1]]
 
@@ -56,7 +56,7 @@ def references(call, scene, camera):
     """Luminances of each."""
     found = []
     for seed in range(FIRST_SEED, FIRST_SEED + call.references):
-        picture = call.cache / f"{scene}-{camera}-{call.size}-{call.paths}-{seed}.exr"
+        picture = call.cache / f"{scene.stem}-{camera}-{call.size}-{call.paths}-{seed}.exr"
         if not picture.exists():
             unfinished = picture.with_suffix(".part.exr")
             trace_paths(call, scene, camera, call.paths, seed, unfinished)
@@ -81,13 +81,13 @@ def rows(call, scene, camera):
     path_seconds = trace_paths(call, scene, camera, timed, FIRST_SEED, call.cache / "timed.exr") * call.paths / timed
     for asked in call.errors:
         picture = call.cache / "picture.exr"
-        out, seconds = run(call.program, "render", TOP / "scenes/library/sts46" / f"{scene}.toml", "--camera", camera, "--size", call.size,
+        out, seconds = run(call.program, "render", scene, "--camera", camera, "--size", call.size,
                            "--error", asked, "--seed", call.seed, "-q", "--json", "-o", picture)
         error = json.loads(out)["error"]
         truth = error_truth.compare(error_truth.picture(picture)[0], first, second, counts, more)
         unsure = truth.doubt / (2 * truth.error) if truth.error > 0 else math.sqrt(truth.doubt)
-        paths = path_seconds * (of_paths / truth.error)**2
-        yield (f"| {scene} {camera} | {100 * asked:g} % | {100 * error['estimate']:.1f}, {100 * error['bound_95']:.1f} % | "
+        paths = path_seconds * (of_paths / max(truth.error, 1e-6))**2
+        yield (f"| {scene.stem} {camera} | {100 * asked:g} % | {100 * error['estimate']:.1f}, {100 * error['bound_95']:.1f} % | "
                f"{100 * truth.error:.1f} ± {100 * unsure:.1f} % | {100 * truth.bias:+.2f} % | {seconds:.1f} | {paths:.0f} | "
                f"{seconds / paths:.3f} |")
 
@@ -95,7 +95,7 @@ def rows(call, scene, camera):
 def main():
     parser = argparse.ArgumentParser(description="CPU seconds to a true error, beside a path tracer's")
     parser.add_argument("program", type=pathlib.Path)
-    parser.add_argument("--scene", action="append", choices=SCENES)
+    parser.add_argument("--scene", action="append", type=pathlib.Path, help="a file; default: three of sts46")
     parser.add_argument("--camera", action="append")
     parser.add_argument("--size", default="256x256")
     parser.add_argument("--errors", type=lambda text: [float(one) for one in text.split(",")], default=[0.05, 0.02])
@@ -106,7 +106,7 @@ def main():
     call = parser.parse_args()
     call.program = call.program.resolve()
     call.cache.mkdir(parents=True, exist_ok=True)
-    print("| sts46 | asked | stated, bound | true | bias | CPU s | paths, CPU s | ratio |")
+    print("| scene | asked | stated, bound | true | bias | CPU s | paths, CPU s | ratio |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     for scene in call.scene or SCENES:
         for camera in call.camera or ["B"]:
