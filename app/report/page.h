@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // report.html: what a visibility study found, as one page that needs nothing beside it and no
-// network. Drawn from study.json alone (docs/studies.md, "The report").
+// network. Drawn from study.json alone (docs/visibility.md, "The report").
 #pragma once
 
 #include <filesystem>

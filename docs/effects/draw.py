@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Draws docs/images/effect-*.png: each effect off (left) and on (right), with the commands of TABLE.
-Usage: docs/effects/draw.py PROGRAM  (./dev effects calls it)."""
+Usage: docs/effects/draw.py PROGRAM"""
 import pathlib
 import struct
 import subprocess

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A visibility study as its file has it (docs/studies.md, "Study files").
+// A visibility study as its file has it (docs/visibility.md, "Study files").
 #pragma once
 
 #include <filesystem>

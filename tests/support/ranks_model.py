@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The table of docs/scaling.md: seconds of `solve` and `render` on R ranks of one thread, from what one rank was measured to need.
+"""The table of docs/log/scaling.md: seconds of `solve` and `render` on R ranks of one thread, from what one rank was measured to need.
 
 usage: ranks_model.py [BYTES-PER-SECOND [SECONDS-PER-MESSAGE]]
 """
@@ -12,7 +12,7 @@ BANDS = 16  # of rows, in which columns are summed (radiosity/factors/column_sum
 RANKS = (1, 2, 4, 8, 16, 64, 256, 1024, 4096)
 
 
-# One thread's seconds, of a profile of `solve` with 493083 patches (docs/scaling.md): of an entry in a pass of columns' sums; of a
+# One thread's seconds, of a profile of `solve` with 493083 patches (docs/log/scaling.md): of an entry in a pass of columns' sums; of a
 # patch in files and tables.
 SUM_S, PATCH_S = 1.54e-9, 5.9e-6
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the materials of files become, beside what their own models say: the table of docs/models.md.
+"""What the materials of files become, beside what their own models say: the table of docs/data/materials.md.
 
 usage: EARTHSHINE_PROGRAM=build/release/earthshine material_maps.py
 

@@ -158,8 +158,13 @@ TEST(Presets, TubeGrainGrowsRelativeToTheSignalInTheShadows) {
 }
 
 std::string document() {
-  std::ifstream file(EARTHSHINE_SOURCE_DIR "/docs/cctv.md");
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::string text;
+  for (const char* name : {EARTHSHINE_SOURCE_DIR "/docs/cctv.md",
+                           EARTHSHINE_SOURCE_DIR "/docs/data/cctv-cameras.md"}) {
+    std::ifstream file(name);
+    text.append(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  }
+  return text;
 }
 
 struct InTheDocument {
