@@ -163,8 +163,8 @@ void set_std_errors(const std::vector<ObjectTable>& signed_tables,
 }
 
 // Two estimates of a pair that differ by more than their noise have another fault, mostly faces
-// that lie on each other (docs/theory.md, "Known limit"). Half their difference is then the error.
-// Returns how many pairs.
+// that lie on each other (docs/theory.md, "Faces on each other"). Half their difference is then
+// the error. Returns how many pairs.
 std::size_t widen_by_disagreement(const ObjectFormFactors& cast, ObjectFormFactors& o) {
   constexpr double errors_apart = 6.0;
   std::size_t pairs = 0;

@@ -20,8 +20,9 @@ struct SceneUse {
   bool shows_facts = false;            // of each light whether it shines: no need to say it twice
 };
 
-// One line each, with what to do; docs/scene-format.md lists them under "Warnings". Casts 576 rays
-// a camera, and up to 512 for each lamp and each emitting object; the same rays for the same scene.
+// One line each, with what to do; docs/scene-format.md lists them under "Warnings about likely
+// mistakes". Casts 576 rays a camera, and up to 512 for each lamp and each emitting object; the
+// same rays for the same scene.
 [[nodiscard]] std::vector<std::string> implausible_input(const Scene& scene, const RayQuery& query,
                                                          const SceneUse& use);
 

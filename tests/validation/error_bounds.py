@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Are the stated errors honest? `./dev validate --errors` runs this; its output is a part of docs/validation.md.
+"""Are the stated errors honest? `./dev validate --errors` runs this; its output is a part of docs/data/validation.md.
 
     error_bounds.py PROGRAM [--quick] [--only NAME] [--cache DIR] [--seed N]
 

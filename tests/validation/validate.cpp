@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints the tables of docs/validation.md. `./dev validate` runs it.
+// Prints the tables of docs/data/validation.md. `./dev validate` runs it.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Measures what accuracy costs on the shipped scenes: runs `study accuracy` on each (or goes on with what is kept in
-out/accuracy), copies the plots to docs/images and writes the tables of docs/accuracy.md between its markers. With names
+out/accuracy), copies the plots to docs/images and writes the tables of docs/data/accuracy.md between its markers. With names
 of plots it does so for these alone and leaves the other chapters as they are.
-Usage: docs/accuracy/make.py PROGRAM [NAME ...]"""
+Usage: docs/data/accuracy.py PROGRAM [NAME ...]"""
 import json
 import pathlib
 import re
@@ -12,8 +12,8 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-PAGE = ROOT / "docs/accuracy.md"
-BEGIN, END = "<!-- docs/accuracy/make.py writes this: begin -->", "<!-- docs/accuracy/make.py writes this: end -->"
+PAGE = ROOT / "docs/data/accuracy.md"
+BEGIN, END = "<!-- docs/data/accuracy.py writes this: begin -->", "<!-- docs/data/accuracy.py writes this: end -->"
 # Name of the plots, scene, camera, size.
 VIEWS = [
     ("closed-box", "closed-box/scene", None, "64x64"),
@@ -96,8 +96,8 @@ def chapter(name, result, command):
     limits = "; ".join(f"{limit['method']} {percent(limit['error'])}" for limit in result["limits"] if limit["error"])
     title = f"{result['scene'].removeprefix('scenes/library/')}, camera {result['camera']}"
     text = [f"### {title}, {result['columns']} x {result['rows']}", "", f"`{command}`", "",
-            f"![Error against CPU seconds and memory](images/accuracy-{name}-seconds.svg)",
-            f"![Error against each setting](images/accuracy-{name}-settings.svg)", "",
+            f"![Error against CPU seconds and memory](../images/accuracy-{name}-seconds.svg)",
+            f"![Error against each setting](../images/accuracy-{name}-settings.svg)", "",
             f"Reference: two pictures of {result['reference']['paths_per_pixel']} paths a pixel, which tell errors from "
             f"{percent(result['reference']['resolution'])} on. Limits that no setting gets past: {limits or 'none'}.", ""]
     text += [found["sentence"] for found in result["worth"]]
@@ -105,7 +105,7 @@ def chapter(name, result, command):
 
 
 def chapters_of(page):
-    """The chapters that stand between the markers, by the name of their plots."""
+    """The chapters between the markers, by the name of their plots."""
     chapters = page.split(BEGIN)[1].split(END)[0].strip().split("\n### ")
     chapters = ["### " + chapter.removeprefix("### ").strip() + "\n" for chapter in chapters if chapter]
     return {re.search(r"images/accuracy-(.*)-seconds.svg", chapter)[1]: chapter for chapter in chapters}
