@@ -29,9 +29,9 @@ class SobolSet4 {
     std::uint32_t run[4];  // XOR masks of a later run, lowest bit first
     explicit Scramble(Key key);
   };
-  // Selects the points of the sequence from run * count() on instead of the first ones. Runs 0 to m
-  // - 1, m a power of two, form the set of m * count() points. Sobol numbers are linear in the bits
-  // of the index, so that a run differs from the first one by one XOR per dimension.
+  // Selects the points of the sequence from run * count() on instead of the first ones. Runs
+  // 0 to m - 1, m a power of two, form the set of m * count() points. Sobol numbers are linear in
+  // the bits of the index, so that a run differs from the first one by one XOR per dimension.
   void go_to_run(std::uint32_t run, Scramble& scramble) const;
 
   struct alignas(32) Points {
