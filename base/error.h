@@ -18,7 +18,7 @@ struct Location {
   int column = 0;
 };
 
-// "scene.toml:14:3", "scene.toml:14" or "scene.toml", as far as known.
+// "scene.toml:14:3", or without unknown column or line: "scene.toml:14", "scene.toml".
 [[nodiscard]] std::string to_string(const Location& location);
 
 // Input: the command line, the scene or a file that it names is wrong (exit code 2).

@@ -138,8 +138,8 @@ std::uint64_t resident_bytes() {
   return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-// Free memory by look(), after the allocator has returned its unused memory. This memory is at most
-// the resident memory, so that it is ignored if the resident memory is an eighth or less.
+// Free memory by look(). First returns the allocator's unused memory, which is at most the resident
+// memory; not if the resident memory is an eighth of the free memory or less.
 template <class Look>
 Bytes left_for_use(const Look& look) {
   const Bytes left = look();

@@ -35,7 +35,7 @@ class Shares {
   // The rank that has the item. Needs divided items.
   [[nodiscard]] int holder(std::size_t item) const;
 
-  // All-gather of `each` values per item; every rank has set the values of its own items.
+  // All-gather of `each` values per item; every rank has set its items.
   template <class Value>
   void tell(Value* values, std::size_t each = 1) const {
     static_assert(std::is_trivially_copyable_v<Value>);

@@ -40,7 +40,7 @@ struct PointMoments {
 // and r the rise of f from mean - 6 sigma to mean + 6 sigma. The errors of mean, slope * sigma and
 // curvature * sigma^2 are then below 1e-4 d + 1e-5 r, the error of the variance below
 // 1e-4 d^2 + 1e-6 r^2. The table depends on the whole picture, so that a part of it alone may
-// differ by as much. Bitwise equal for any number of threads.
+// give results that differ by as much. Bitwise equal for any number of threads.
 struct MomentPlanes {
   Plane mean, variance, slope, curvature;
 };

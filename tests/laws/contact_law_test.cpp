@@ -102,7 +102,7 @@ constexpr const char* plate =
     "corners = [[-2, -2, 0], [2, -2, 0], [2, 2, 0], [-2, 2, 0]]\nmaterial = \"wall\"\n";
 
 // Papers that lie flat on a plate and on each other, along the edges of its patches, receive the
-// plate's light instead of it. The Sun above is within 0.27 degrees of vertical, so that 16 m2
+// light instead of the plate. The Sun above is within 0.27 degrees of vertical, so that 16 m2
 // receive E to a relative 1 - cos 0.27 deg = 1.1e-5. If overlaps counted twice, it would be 24 m2.
 TEST(Contact, PapersOnAPlateTakeNoMoreLightThanThePlate) {
   const std::string flat =
