@@ -5,14 +5,14 @@
 //   refine_bench SCENE.toml REFERENCE_EDGE RAYS EDGE[,EDGE...] START_EDGE BUDGET[,BUDGET...]
 // Without arguments: the Cornell box and the payload bay by Sun.
 //
-// Columns: error of the radiosity of the patches; the same as a mean over light groups, each
-// relative to its light; error of the interpolated radiosity, as gather rays read it; estimate of
-// the refinement; seconds in all; seconds of the refinement.
+// The first column is the error of the radiosity of the patches. The second is the same as a mean
+// over light groups, each relative to its light. The third is the error of the interpolated
+// radiosity, as gather rays read it. Then follow the estimate of the refinement, seconds in all and
+// seconds of the refinement.
 //
 // The error is the RMS over all surfaces, relative to the RMS of the radiosity, at the patch
 // centres of the reference. The reference is solved with two seeds. The error is the mean product
 // of the two differences, which cancels the noise of the reference.
-// product of the two differences, so that the reference's own noise drops out.
 #include <fmt/format.h>
 
 #include <chrono>

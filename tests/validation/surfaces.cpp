@@ -3,7 +3,6 @@
 //   earthshine_surfaces SCENE POINTS {FILE.h5 SEED KEY=VALUE...} -- {FILE.h5 SEED KEY=VALUE...} ...
 // SEED and KEY=VALUE (scene overrides) as given to "solve". Prints a line of luminances per
 // uncovered point.
-// covers: luminances.
 #include <fmt/format.h>
 
 #include <exception>
