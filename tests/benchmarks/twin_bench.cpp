@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sensor pixels per second of each step of the analytic twin, and of all steps for one plane of a
-// tube camera. The steps are grain of blur and bandwidth, clamp and gamma, screen, spread onto 3 x 3
-// pixels, and detection. The picture is 400 x 300 resels, half of it near black.
+// tube camera. The steps are grain of blur and bandwidth, clamp and gamma, screen, spread onto
+// 3 x 3 pixels, and detection. The picture is 400 x 300 resels, half of it near black.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
