@@ -88,8 +88,8 @@ void expect_agreement(const tests::Agreement& a) {
 // This is below the noise: over ten seeds the Cornell box's mean z, of 1 024 rays and paths, is
 // -0.05 +- 0.014, a third of its four standard errors. Uniform patches converge slowly where bodies
 // touch, because a patch partly under a box shines into the box: -3.1 / -1.9 / -1.1 % for
-// 525 / 2 100 / 8 237 patches in the furnace, but -0.05 % for 533 patches with its box lifted off the
-// floor.
+// 525 / 2 100 / 8 237 patches in the furnace, but -0.05 % for 533 patches with its box lifted off
+// the floor.
 TEST(Agreement, CornellBox) {
   expect_agreement(agreement(read("tests/data/peers/cornell/scene.toml"), {0.5, 6000, 640, 1024}));
 }
