@@ -19,14 +19,14 @@ std::string compose(std::string_view where, std::string_view found, std::string_
   text += found;
   if (!allowed.empty()) text.append("; ").append(allowed);
   if (!remedy.empty()) text.append(". ").append(remedy);
-  // what() ends at the first NUL, and binary files have them.
+  // what() ends at the first NUL; text from binary files may contain some.
   for (std::size_t at = 0; (at = text.find('\0', at)) != std::string::npos;) {
     text.replace(at, 1, "\\x00");
   }
   return text;
 }
 
-// The number of the character of `length` bytes, 2 to 4, that `text` begins with.
+// Code point of the UTF-8 character of `length` bytes, 2 to 4, at the start of `text`.
 unsigned number_of(std::string_view text, std::size_t length) {
   unsigned number = static_cast<unsigned char>(text[0]) & (0xFFU >> (length + 1));
   for (std::size_t k = 1; k < length; ++k) {
@@ -38,8 +38,8 @@ unsigned number_of(std::string_view text, std::size_t length) {
 struct Span {
   unsigned first, last;
 };
-// Controls (C1), soft hyphen, mark of Arabic direction, marks and overrides of direction,
-// separators of lines, characters without width, tags and other formats.
+// Invisible characters: C1 controls, soft hyphen, Arabic letter mark, direction marks and
+// overrides, line separators, zero-width characters, interlinear annotations.
 constexpr Span hidden[] = {{0x80, 0x9F},     {0xAD, 0xAD},     {0x61C, 0x61C},
                            {0x180E, 0x180E}, {0x200B, 0x200F}, {0x2028, 0x202E},
                            {0x2060, 0x206F}, {0xFEFF, 0xFEFF}, {0xFFF9, 0xFFFB}};

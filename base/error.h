@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one exception type of the project. Libraries throw it; app/main prints it and picks the exit
-// code.
+// The one exception type of the project. Libraries throw it; app/main prints it and chooses the
+// exit code.
 #pragma once
 
 #include <algorithm>
@@ -11,21 +11,21 @@
 
 namespace earthshine::base {
 
-// A place in a file the user wrote. line and column count from 1; 0 means "not known".
+// A position in a file that the user wrote. line and column start at 1; 0: unknown.
 struct Location {
   std::string file;
   int line = 0;
   int column = 0;
 };
 
-// "scene.toml:14:3", "scene.toml:14" or "scene.toml", as far as known.
+// "scene.toml:14:3", or without unknown column or line: "scene.toml:14", "scene.toml".
 [[nodiscard]] std::string to_string(const Location& location);
 
-// Input: the call, the scene or a file it names is wrong (exit code 2).
-// Work: the call was right but the work failed, e.g. a full disk (exit code 1).
+// Input: the command line, the scene or a file that it names is wrong (exit code 2).
+// Work: valid input, but the work failed, such as by a full disk (exit code 1).
 enum class Blame { Input, Work };
 
-// Every message says where, what was found, what is allowed and what to do. allowed and remedy are
+// A message has the place, the fault, the allowed values and the remedy. allowed and remedy are
 // whole sentences without the final stop; either may be empty.
 class Error : public std::runtime_error {
  public:
@@ -40,18 +40,18 @@ class Error : public std::runtime_error {
   Blame blame_;
 };
 
-// What the system says of an error number, e.g. "No such file or directory".
+// The system's text for an error number, e.g. "No such file or directory".
 [[nodiscard]] std::string system_reason(int error_number);
 
-// Whose fault it is that a file or folder cannot be written: Input where its name can be none (too
-// long, below a file), Work where the machine refuses (no permission, read only, full).
+// Blame for a file or folder that cannot be written. Input: the name is invalid (too long, below a
+// file). Work: the system refuses (no permission, read only, full disk).
 [[nodiscard]] Blame blame_of_target(int error_number);
 
-// The candidate nearest to `word` by edit distance, or "" when none is near enough to be meant:
-// words that have no letter in common are not. Candidates: any range of strings. Large and small
-// letters are alike.
+// Levenshtein distance. Upper and lower case are equal.
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
+// The candidate nearest to `word` by edit distance; "" if all are too different. Words without a
+// common letter never match. candidates: any range of strings.
 template <class Candidates>
 [[nodiscard]] std::string nearest_word(std::string_view word, const Candidates& candidates) {
   std::size_t best = word.size() / 2 + 2;
@@ -67,17 +67,16 @@ template <class Candidates>
   return found;
 }
 
-// Text from files and calls made fit for a terminal. The program writes everything that a person
-// reads through this, so that no name can move the cursor, turn the direction of writing or hide.
+// Terminal-safe text. All names from files and arguments are escaped before they are printed, so
+// that none can move the cursor, change the writing direction or be invisible.
 
-// Length in bytes of the UTF-8 character at the start of `text`; 0 if it is not one (overlong
-// forms, surrogates and values beyond U+10FFFF included).
+// Length in bytes of the UTF-8 character at the start of `text`; 0 if it is invalid (also overlong
+// forms, surrogates and values above U+10FFFF).
 [[nodiscard]] std::size_t utf8_length(std::string_view text);
 
-// Control characters below U+0020 and bytes that are not UTF-8 become \xNN; what else a terminal
-// obeys or does not show (DEL, U+0080 to U+009F, marks of direction, separators of lines,
-// characters without width) becomes \uNNNN, which in JSON means the same character. `kept`: control
-// characters that stay.
+// Escapes control characters below U+0020 and invalid UTF-8 as \xNN. Escapes DEL, U+0080 to U+009F,
+// direction marks, line separators and zero-width characters as \uNNNN, which is the same character
+// in JSON. kept: control characters that are not escaped.
 [[nodiscard]] std::string escaped(std::string_view text, std::string_view kept = {});
 
 }  // namespace earthshine::base

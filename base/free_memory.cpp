@@ -12,7 +12,7 @@
 
 #include "base/error.h"
 
-// jemalloc's, where the program is linked with it.
+// Defined if the program is linked with jemalloc.
 extern "C" [[gnu::weak]] int mallctl(const char* name, void* old, std::size_t* old_size, void* set,
                                      std::size_t set_size);
 
@@ -28,7 +28,7 @@ void take_least(Bytes& least, Bytes found) {
 
 std::uint64_t less(std::uint64_t a, std::uint64_t b) { return a > b ? a - b : 0; }
 
-// A file that holds one number; nothing for "max".
+// The number in a file; none for "max".
 Bytes number_in(const fs::path& path) {
   std::ifstream file(path);
   std::uint64_t value = 0;
@@ -36,7 +36,7 @@ Bytes number_in(const fs::path& path) {
   return value;
 }
 
-// The number behind a word: "MemAvailable: 123 kB", "inactive_file 123".
+// The number after a word: "MemAvailable: 123 kB", "inactive_file 123".
 Bytes number_after(const fs::path& path, const std::string& word) {
   std::ifstream file(path);
   std::string line;
@@ -56,7 +56,7 @@ constexpr GroupFiles version_1 = {"memory.limit_in_bytes", "memory.usage_in_byte
                                   "total_inactive_file"};
 constexpr GroupFiles version_2 = {"memory.max", "memory.current", "inactive_file"};
 
-// What is left of one control group.
+// Free memory of one control group.
 Bytes left_of(const fs::path& folder, const GroupFiles& files) {
   const Bytes limit = number_in(folder / files.limit);
   if (!limit) return std::nullopt;
@@ -65,8 +65,9 @@ Bytes left_of(const fs::path& folder, const GroupFiles& files) {
   return less(*limit, less(usage, cache));
 }
 
-// Of the process's group and all above it. In a container /proc may name a path that is not mounted
-// there: the walk upward then finds the mount's own top, which is the container's group.
+// Least free memory of the process's control group and its ancestors. In a container /proc may name
+// a path that is not mounted; the loop then reaches the top of the mount, which is the container's
+// group.
 Bytes left_of_groups(const fs::path& root) {
   Bytes least;
   std::ifstream file(root / "proc/self/cgroup");
@@ -90,10 +91,10 @@ Bytes left_of_groups(const fs::path& root) {
   return least;
 }
 
-// Addresses without memory, which the allocator has for itself.
+// Address space without memory that the allocator keeps.
 std::uint64_t retained_bytes() {
   if (&mallctl == nullptr) return 0;
-  std::uint64_t epoch = 1;  // asks for numbers of now
+  std::uint64_t epoch = 1;  // refreshes the statistics
   std::size_t retained = 0, size = sizeof(retained);
   mallctl("epoch", nullptr, nullptr, &epoch, sizeof(epoch));
   return mallctl("stats.retained", &retained, &size, nullptr, 0) == 0 ? retained : 0;
@@ -107,7 +108,7 @@ Bytes left_of_address_space(const fs::path& root) {
   return less(limit.rlim_cur, less(pages * page_bytes, retained_bytes()));
 }
 
-// Of the machine and of the process's control groups.
+// Free memory of the machine and of the process's control groups.
 Bytes left_of_machine(const fs::path& root) {
   Bytes least;
   if (const Bytes kib = number_after(root / "proc/meminfo", "MemAvailable:")) least = *kib * 1024;
@@ -115,11 +116,11 @@ Bytes left_of_machine(const fs::path& root) {
   return least;
 }
 
-// Of this process; 0: no cap.
+// Limits of this process, bytes; 0: none.
 std::atomic<std::uint64_t> most_bytes{0}, room_bytes{0};
 std::atomic<int> sharers{1};
 
-// All that the allocator keeps.
+// Returns all unused memory of the allocator to the system.
 void give_back() {
   if (&mallctl == nullptr) {
     ::malloc_trim(0);
@@ -129,7 +130,7 @@ void give_back() {
   }
 }
 
-// What the process holds in memory now; 0 where Linux does not say.
+// Resident memory of the process; 0 if Linux does not report it.
 std::uint64_t resident_bytes() {
   std::ifstream file("/proc/self/statm");
   std::uint64_t whole = 0, resident = 0;
@@ -137,8 +138,8 @@ std::uint64_t resident_bytes() {
   return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-// What look() says is left, once what the allocator keeps is given back. That is part of what the
-// process holds: where this is little beside what is left, it may stay.
+// Free memory by look(). First returns the allocator's unused memory, which is at most the resident
+// memory; not if the resident memory is an eighth of the free memory or less.
 template <class Look>
 Bytes left_for_use(const Look& look) {
   const Bytes left = look();

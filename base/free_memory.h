@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much memory this process may still take: of the machine, of its control group, of its limit.
+// Memory that this process may still allocate: limits of machine, control group and process.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,9 @@
 
 namespace earthshine::base {
 
-// Caps what free_memory_bytes() says for as long as it lives; 0: no cap. processes: of one call, on
-// this machine, of which this is one: what is free as it begins is theirs together, as is the cap,
-// and each gets an equal part.
+// RAII: limits free_memory_bytes() in the current scope; 0: no limit. processes: number of ranks of
+// one call on this machine. Each gets an equal share of the limit and of the memory that is free at
+// the start.
 class MemoryLimit {
  public:
   explicit MemoryLimit(std::uint64_t bytes, int processes = 1);
@@ -23,29 +23,30 @@ class MemoryLimit {
   MemoryLimit& operator=(const MemoryLimit&) = delete;
 };
 
-// Throws base::Error (Work) where `bytes` more than the process holds now would pass that cap, or
-// are not free. `what` names what they are for. For readers, which cannot know beforehand what the
-// whole work takes; a few MiB are not asked about.
+// Throws base::Error (Work) if `bytes` more than the resident memory would exceed this limit or the
+// free memory. `what` names the data in the message. For readers, which do not know the memory of
+// the whole work. Requests below 8 MiB always pass.
 void check_room(std::uint64_t bytes, std::string_view what);
 
-// Whose bytes free_memory_bytes() tells: "free", "allowed by --max-memory", for each of how many.
+// Describes free_memory_bytes() in messages: "free" or "allowed by --max-memory", with the number
+// of ranks.
 [[nodiscard]] std::string memory_bound();
 
-// Bytes. The least of what Linux calls MemAvailable, what is left below the limit of the control
-// group or any above it (versions 1 and 2; file cache that can be dropped counts as free), and what
-// is left of RLIMIT_AS; what the allocator kept is given back first where it matters. Nothing where
-// none of them can be read. Inside `root`, for tests, stand proc/ and sys/.
+// The least of MemAvailable of Linux, the free memory of the control group and its ancestors
+// (versions 1 and 2; cache that can be dropped is free), and the rest of RLIMIT_AS. If the
+// allocator may keep much unused memory, it is returned first. Empty if none can be read. root:
+// folder with proc/ and sys/, for tests.
 [[nodiscard]] std::optional<std::uint64_t> free_memory_bytes(
     const std::filesystem::path& root = "/");
 
-// Frees what a vector holds; `values = {}` would keep it for further ones.
+// Frees the memory of a vector; `values = {}` would keep its capacity.
 template <class Value>
 void release(std::vector<Value>& values) {
   std::vector<Value>().swap(values);
 }
 
-// What was freed of arrays of so many bytes together is the system's again, unless they are small:
-// to take its pages anew would cost more. The allocator else keeps it, for each thread by itself.
+// Returns memory of freed arrays of `bytes` in all to the system. Otherwise the allocator keeps it
+// for each thread. Small sizes are ignored: new pages would cost more.
 void give_back_freed_memory(std::size_t bytes);
 
 }  // namespace earthshine::base

@@ -24,7 +24,7 @@ struct Image {
   [[nodiscard]] std::size_t pixel_count() const {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   }
-  // nullptr when there is no such channel.
+  // nullptr if there is no such channel.
   [[nodiscard]] const Channel* find(std::string_view name) const;
   // Adds a channel of zeros and returns its values. The name must be new.
   std::vector<float>& add(std::string name);
@@ -33,8 +33,8 @@ struct Image {
 // An image with the channels R, G and B, all zero.
 [[nodiscard]] Image make_rgb_image(int width, int height);
 
-// R, G and B at a pixel index; a picture with the single channel Y is read as grey.
-// Throws base::Error (Input) if neither R, G, B nor Y is there.
+// Luminance of every pixel, from R, G, B or from the single channel Y. Throws base::Error (Input)
+// if the image has neither.
 [[nodiscard]] std::vector<float> luminance_of(const Image& image);
 
 }  // namespace earthshine::base

@@ -27,9 +27,9 @@ std::atomic<const std::function<bool()>*> stop_in_force{nullptr};
 #ifdef __SANITIZE_THREAD__
 namespace {
 
-// The thread sanitizer cannot see how the uninstrumented oneTBB orders its tasks and would call
-// every one of them a race. Under it the same chunks run on plain threads, so that what it reports
-// are races of the project's own.
+// The thread sanitizer does not see the synchronisation in the uninstrumented oneTBB and would
+// report races in every task. Under it the chunks run on plain threads, so that it reports only
+// races of this project.
 template <class Run>
 void run_on_plain_threads(std::size_t chunks, const Run& run) {
   std::atomic<std::size_t> next{0};
@@ -72,7 +72,7 @@ StopInForce::~StopInForce() { stop_in_force = nullptr; }
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-// No more than cores, and than the ThreadLimit in force allows.
+// At most the number of cores and the current ThreadLimit.
 int available_threads() {
   const auto allowed =
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
@@ -91,8 +91,7 @@ void parallel_chunks(std::size_t count, std::size_t chunk,
 #ifdef __SANITIZE_THREAD__
   run_on_plain_threads(chunks, run);
 #else
-  // simple_partitioner honours the grain of one chunk, so that chunk boundaries are the same every
-  // run.
+  // simple_partitioner with a grain of one chunk keeps the chunk boundaries the same in every run.
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, chunks, 1),
       [&](const tbb::blocked_range<std::size_t>& range) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The project's only use of threads (oneTBB). Results never depend on the number of threads.
+// The only use of threads in the project (oneTBB). Results never depend on the number of threads.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,7 @@
 
 namespace earthshine::base {
 
-// Limits every parallel loop to `threads` for as long as it lives; 0 means all cores of the
-// process.
+// RAII: limits parallel loops to `threads` in the current scope; 0: all cores of the process.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);
@@ -24,12 +23,11 @@ class ThreadLimit {
 
 [[nodiscard]] int available_threads();
 
-// CPU seconds of this process so far, all threads together: what others on the machine take is not
-// in it.
+// CPU time of this process in seconds, over all threads, without other processes.
 [[nodiscard]] double cpu_seconds();
 
-// While it lives, parallel loops end by throwing Stopped once `asked` says true. It is asked from
-// many threads, between chunks. One at a time.
+// RAII: in its scope, parallel loops throw Stopped once `asked` returns true. Threads call it
+// between chunks, concurrently. Only one instance may exist at a time.
 struct Stopped {};
 class StopInForce {
  public:
@@ -43,12 +41,12 @@ class StopInForce {
 };
 
 // Calls body(begin, end) over [0, count) in chunks of at most `chunk` items. body may write only to
-// the slots it owns. The first exception is rethrown on the calling thread.
+// its own items. Rethrows the first exception on the calling thread.
 void parallel_chunks(std::size_t count, std::size_t chunk,
                      const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-// Fresh memory takes longer to come than to be filled: each is touched first by one of all threads,
-// and taken by the caller's, which gives it back.
+// Resizes vectors in parallel, because first access to new memory is slower than writing to it. The
+// calling thread allocates the memory and later frees it.
 template <class Vectors>
 void resize_together(Vectors& all, std::size_t size) {
   for (auto& one : all) one.reserve(size);
@@ -57,8 +55,8 @@ void resize_together(Vectors& all, std::size_t size) {
   });
 }
 
-// Sums sum_chunk(begin, end) over fixed chunks, adding in chunk order: the same bits on any number
-// of threads.
+// Sum of sum_chunk(begin, end) over fixed chunks, added in chunk order: bitwise equal results for
+// any number of threads.
 template <class T, class SumChunk>
 [[nodiscard]] T ordered_sum(std::size_t count, std::size_t chunk, T zero, SumChunk sum_chunk) {
   std::vector<T> parts((count + chunk - 1) / chunk, zero);

@@ -26,7 +26,7 @@ void refuse_non_finite(const Image& image, const std::vector<float>& luminance) 
   }
 }
 
-// {1, 0} for a picture without light.
+// {1, 0} for a black picture.
 ToneReport choose_exposure(const std::vector<float>& luminance) {
   std::vector<float> lit;
   for (float y : luminance) {
@@ -39,8 +39,8 @@ ToneReport choose_exposure(const std::vector<float>& luminance) {
   std::nth_element(lit.begin(), bright, lit.end());
   const double percentile = *bright;
 
-  // The logarithm would let a few all but black pixels decide the exposure: below 1e-5 of the
-  // bright end (17 stops) counts as not lit.
+  // A few nearly black pixels would dominate the logarithm. Pixels below 1e-5 of the bright end (17
+  // stops) are not lit.
   struct LogSum {
     double sum = 0.0, count = 0.0;
     LogSum& operator+=(const LogSum& o) {
@@ -65,7 +65,7 @@ ToneReport choose_exposure(const std::vector<float>& luminance) {
   return {exposure, white / exposure};
 }
 
-// scale(luminance): of the colour that is shown over the colour that is there.
+// scale_of(luminance): ratio of displayed colour to radiance.
 template <class Scale>
 ToneMapped apply_curve(const Image& image, const std::vector<float>& luminance,
                        const ToneReport& report, Scale scale_of) {
@@ -81,7 +81,7 @@ ToneMapped apply_curve(const Image& image, const std::vector<float>& luminance,
       const double scale = scale_of(std::max(0.0, static_cast<double>(luminance[i])));
       Rgb colour{channels[0]->values[i], channels[1]->values[i], channels[2]->values[i]};
       colour = glm::max(colour * scale, Rgb(0.0));
-      // Divided rather than clipped, so that a bright lamp keeps its hue.
+      // Scaled instead of clipped, so that a bright lamp keeps its hue.
       colour /= std::max(1.0, max_component(colour));
       for (int c = 0; c < 3; ++c)
         result.rgb[3 * i + static_cast<std::size_t>(c)] = srgb_byte(colour[c]);
@@ -113,11 +113,11 @@ double srgb_curve(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
-// Where the bytes begin, so that a pixel costs a look-up in place of a power.
+// Thresholds of the bytes: a table look-up instead of a power per pixel.
 struct SrgbSteps {
   static constexpr std::size_t cells = 4096;
   std::array<double, 256> begin{};          // smallest value that rounds to this byte
-  std::array<std::uint8_t, cells> first{};  // byte of a cell's lower end
+  std::array<std::uint8_t, cells> first{};  // byte at the lower end of a cell
 
   SrgbSteps() {
     for (std::size_t byte = 1; byte < begin.size(); ++byte) {

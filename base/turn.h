@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cosine and sine written without branches, so that the compiler lets eight run side by side.
+// Cosine and sine without branches, so that the compiler vectorises them.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@ struct Turned {
   float cosine, sine;
 };
 
-// Of `turns` full turns, turns in [0, 1): Taylor series within an eighth of a turn of the nearest
-// quarter, exact to 4e-7.
+// Cosine and sine of `turns` full turns, turns in [0, 1). Taylor series about the nearest quarter
+// turn; error below 4e-7.
 [[nodiscard]] inline Turned turn(float turns) {
   const float quarters = 4.0F * turns;
-  // Not below zero; where rounding is off, the other quarter is as near.
+  // Not negative. Where rounding is off, the other quarter is as near.
   // NOLINTNEXTLINE(bugprone-incorrect-roundings)
   const auto quarter = static_cast<std::int32_t>(quarters + 0.5F);
   const float x = (quarters - static_cast<float>(quarter)) * static_cast<float>(0.5 * pi);

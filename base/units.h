@@ -11,7 +11,7 @@
 
 namespace earthshine {
 
-// Any photometric quantity per channel; what it is and its unit stand in the variable's name.
+// Any photometric quantity per channel; the variable's name has its meaning and unit.
 using Rgb = glm::dvec3;
 using Vec3 = glm::dvec3;
 

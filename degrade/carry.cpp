@@ -10,7 +10,7 @@
 namespace earthshine::degrade {
 namespace {
 
-// of(value) for every pixel of the plane.
+// Applies `of` to every value of the plane.
 template <class F>
 Plane map_plane(const Plane& in, F of) {
   Plane out(in.size());
@@ -55,7 +55,7 @@ Moments settled(Moments m) {
   for (std::size_t p = 0; p < m.mean.planes.size(); ++p) {
     MomentPlanes after = through(m.pending, m.mean.planes[p], variance(m, p));
     const Covariance all = mapped(plus(m.grain[p], m.pattern[p]), after);
-    // What two frames share; the rest differs from frame to frame.
+    // The part that two frames share is the pattern; the rest is the grain.
     m.pattern[p] = shared(m.pattern[p], after);
     m.grain[p] = plus(all, times(m.pattern[p], -1.0));
     m.mean.planes[p] = std::move(after.mean);
@@ -107,7 +107,7 @@ Moments carry_lag(Moments m, const StageContext& at) {
 
 Moments carry_bloom(Moments m, const StageContext& at) {
   const CctvCamera& camera = at.setup.camera;
-  // Mean of what lies above: S - min(S, S_most).
+  // Mean excess above saturation: S - min(S, S_most).
   Picture excess = m.mean;
   Moments cut = carry_saturation(std::move(m), at);
   for (std::size_t p = 0; p < excess.planes.size(); ++p) {

@@ -34,7 +34,7 @@ std::vector<std::uint8_t> screen_bytes(const Picture& viewed, double white) {
   return bytes;
 }
 
-// fields: one picture, or two that differ.
+// fields: one picture, or two of a moving scene.
 Result run_chain(std::initializer_list<const base::Image*> seen, const Setup& setup,
                  const Memory& before) {
   const CctvCamera& camera = setup.camera;
@@ -51,7 +51,7 @@ Result run_chain(std::initializer_list<const base::Image*> seen, const Setup& se
     fields.push_back(sensor_input(*radiance, camera.colour, report.negative_pixels));
   }
   report.noise = noise_law(camera);
-  // What stands if the stages that decide it are off.
+  // Defaults for the case that the stages which set them are off.
   report.sensor = {fields.front().columns, fields.front().rows};
   report.exposure.f_number = camera.f_number;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The chain from radiance to what a viewer of the monitor sees: one table of stages in the order in
-// which light meets the parts. A stage is a function from picture to picture; one that is off is
-// not called, and what the others do does not depend on it.
+// The chain from radiance to the picture on the monitor: a table of stages in the order of the
+// light path. A stage maps a picture to a picture. Stages that are off are skipped; the other
+// stages do not depend on them.
 #pragma once
 
 #include <array>
@@ -31,11 +31,11 @@ struct Stage;
 struct Options {
   std::uint64_t seed = 1;
   std::uint64_t frame = 0;
-  std::uint64_t view = 0;  // another number for each camera of a run: other noise
+  std::uint64_t view = 0;  // of the camera in a run; gives each camera different noise
   std::vector<std::string>
-      off;               // stages left out by name, e.g. both noises for the noise-free twin
-  double fov_deg = 0.0;  // vertical, of the picture; 0: not known
-  // Called with the picture after each stage that ran; of an interlaced camera the first field's.
+      off;               // names of stages to skip, e.g. both noises for the noise-free twin
+  double fov_deg = 0.0;  // vertical, of the picture; 0: unknown
+  // Called with the picture after each stage that ran; for interlaced cameras, of the first field.
   std::function<void(const Stage& stage, const Picture&)> watch = {};
 };
 
@@ -44,18 +44,18 @@ struct Report {
   NoiseLaw noise;
   Grid sensor;                          // columns and rows used
   Levels levels;                        // of the amplified signal, before white is clipped
-  double white = 1.0;                   // what the screen shows of signal 1, under the room's light
-  double excess_share = 0.0;            // of the signal: what lay above saturation
-  double lost_share = 0.0;              // of the signal: what saturation and bloom threw away
-  std::size_t negative_pixels = 0;      // of the input, taken as black
-  double clipped_negative_light = 0.0;  // share of the light that a sinc spread made negative
+  double white = 1.0;                   // luminance of signal 1 with room light, cd/m^2
+  double excess_share = 0.0;            // share of the signal above saturation
+  double lost_share = 0.0;              // share of the signal lost by saturation and bloom
+  std::size_t negative_pixels = 0;      // of the input, replaced by black
+  double clipped_negative_light = 0.0;  // share of negative light after a sinc spread
   std::vector<std::string> stages;      // that ran, in order
 };
 
-// What a camera remembers from frame to frame.
+// State of a camera between frames.
 struct Memory {
-  std::optional<double> f_number;  // where the iris stood
-  Picture charge;                  // what the last field left on the target; empty without lag
+  std::optional<double> f_number;  // of the iris
+  Picture charge;                  // left on the target by the last field; empty without lag
 };
 
 struct Result {
@@ -63,7 +63,7 @@ struct Result {
   int rows = 0;
   int channels = 1;                  // 1 grey, 3 RGB
   std::vector<std::uint8_t> pixels;  // sRGB; 255 is the screen's white under the room's light
-  base::Image viewed;                // what the viewer sees, cd/m^2: Y, or R, G, B
+  base::Image viewed;                // luminance of the screen, cd/m^2: Y, or R, G, B
   base::Image signal;                // the line signal on the sensor's grid, 1 = white
   Report report;
   Memory memory;  // for the next frame
@@ -75,8 +75,8 @@ struct Setup {
   Options options;
 };
 
-// A stage's surroundings: what the settings are, what earlier stages found out, what the camera
-// remembers, and which of how many fields of the frame this is.
+// Context of a stage: settings, results of earlier stages, state of the camera, and the number of
+// this field in the frame.
 struct StageContext {
   const Setup& setup;
   Report& report;
@@ -86,25 +86,25 @@ struct StageContext {
 
 struct Moments;  // degrade/carry.h
 
-// Lens: the same for both fields. Sensor: each field of a frame for itself. Monitor: the frame.
+// Lens: once for both fields. Sensor: for each field. Monitor: for the frame.
 enum class Part { Lens, Sensor, Monitor };
 
-// What a stage does to a flat or linear signal: what a measurement has to leave out. Bits.
+// Effects of a stage on a flat or linear signal, so that measurements can switch it off. Bit flags.
 enum class Kind : unsigned {
   Plain = 0,
-  Noise = 1,    // adds it
+  Noise = 1,    // adds noise
   Uneven = 2,   // makes a flat field uneven
   Spatial = 4,  // spreads light over resels
-  Limit = 8,    // ends a linear signal: saturation, black, white
-  Coding = 16,  // gamma and steps
+  Limit = 8,    // limits a linear signal: saturation, black, white
+  Coding = 16,  // gamma and quantisation
   Meter = 32    // counts saturated and black resels of the amplified signal
 };
 [[nodiscard]] constexpr Kind operator|(Kind a, Kind b) {
   return static_cast<Kind>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
 }
 
-// What a stage does: to the picture as a whole, to each point alike, or as filters along and across
-// the lines. Of the last two the moments of noise follow.
+// Law of a stage: a function of the whole picture, a point map, or filters along and across the
+// lines. For the last two the moments of noise follow from the law.
 struct StageLaw {
   using OfPicture = Picture (*)(Picture&&, const StageContext&);
   using OfPoints = void (*)(PointMap&, const StageContext&);
@@ -114,7 +114,8 @@ struct StageLaw {
   OfLines filter = nullptr;
 
   template <class Law>
-  constexpr StageLaw(Law law) {  // NOLINT(google-explicit-constructor): rows of the table say it
+  constexpr StageLaw(Law law) {  // NOLINT(google-explicit-constructor): implicit, for the rows of
+                                 // the table
     if constexpr (std::is_convertible_v<Law, OfPicture>) {
       picture = law;
     } else if constexpr (std::is_convertible_v<Law, OfPoints>) {
@@ -130,17 +131,18 @@ struct Stage {
   std::string_view name;
   Part part;
   Kind kind;
-  // That decide whether it runs; those of the monitor as "monitor.NAME". None: it always does.
+  // Settings that decide whether the stage runs; settings of the monitor as "monitor.NAME". Empty:
+  // always.
   std::array<std::string_view, 3> settings;
   std::string_view in, out;  // units
   std::string_view formula;
-  // Report: what earlier stages found, nullptr while there is no picture yet.
+  // Report: results of earlier stages; nullptr while there is no picture.
   bool (*runs)(const Setup&, const Report*);
   StageLaw law;
-  // What the law of a whole picture does to the moments of one with noise; without it noise passes
-  // unchanged and the mean goes through the law. Stages of the lens come before any noise.
+  // Moments after a law of the whole picture. By default noise passes unchanged and the mean passes
+  // through the law. Stages of the lens precede all noise.
   Moments (*carry)(Moments, const StageContext&) = nullptr;
-  // Where the two fields become a frame, in place of the law.
+  // Merges two fields into a frame, instead of the law.
   Picture (*merge)(Picture first, const Picture& second) = nullptr;
 
   [[nodiscard]] constexpr bool is(Kind of) const {
@@ -151,22 +153,22 @@ struct Stage {
 // All stages in order.
 [[nodiscard]] std::span<const Stage> stages();
 
-// Whether the stage runs: its settings call for it, and it is not left out.
+// Whether the stage runs: its settings require it, and it is not switched off.
 [[nodiscard]] bool runs(const Stage& stage, const Setup& setup, const Report* found);
-// Whether the camera's two fields become a frame.
+// Whether the camera merges two fields into a frame.
 [[nodiscard]] bool has_fields(const Setup& setup, const Report& found);
 
-// What the chain works on: luminance, or red, green and blue. Negative light counts as none and is
-// counted. Throws base::Error (Input) for a pixel that is NaN or infinite.
+// Input of the chain: luminance, or red, green and blue. Negative values become 0 and are counted.
+// Throws base::Error (Input) for a NaN or infinite pixel.
 [[nodiscard]] Picture sensor_input(const base::Image& radiance, bool colour,
                                    std::size_t& negative_pixels);
 
-// Share of the signal that is left when the next picture comes: after a field of an interlaced
-// camera, else after a frame, which lasts two fields.
+// Share of the signal that remains in the next picture: after one field of an interlaced camera,
+// else after one frame, which lasts two fields.
 [[nodiscard]] double lag_of(const StageContext& at);
 
-// Which stages this camera and monitor call for, as far as it is known without a picture (an
-// automatic gain may turn out to be 1).
+// Stages that run for this camera and monitor, as far as known without a picture: an automatic gain
+// may be 1.
 struct StagePlan {
   const Stage* stage = nullptr;
   bool runs = false;
@@ -174,19 +176,20 @@ struct StagePlan {
 [[nodiscard]] std::vector<StagePlan> plan(const CctvCamera& camera, const Monitor& monitor,
                                           const Options& options = {});
 
-// radiance: R, G, B or Y in cd/m^2, any size; its whole field of view goes onto the grid of
-// picture_grid. Same input, settings, seed, frame, view and memory: same bytes, on any number of
-// threads. before: the memory of the frame before; without it the camera has looked at this scene
-// for long: its iris stands where it ends and the charge that lags is that of a still scene.
+// radiance: R, G, B or Y in cd/m^2, of any size; its whole field of view is mapped onto the grid of
+// picture_grid. Equal input, settings, seed, frame, view and memory give equal bytes on any number
+// of threads.
+// before: memory of the previous frame. Without it the scene is taken as still for a long time: the
+// iris is in its steady state, and the lag has settled.
 // Throws base::Error (Input) if a pixel is NaN or infinite, options.off names no stage, fall_off is
-// asked for and fov_deg is not known, or `before` belongs to a picture of another shape.
+// set but fov_deg is unknown, or `before` belongs to a picture of another shape.
 [[nodiscard]] Result degrade(const base::Image& radiance, const CctvCamera& camera,
                              const Monitor& monitor, const Options& options = {},
                              const Memory& before = {});
 
-// The same for a scene that moved between the two fields of a frame: each field of its own picture,
-// of the same size; the iris follows the first. Throws base::Error (Input) also when the camera is
-// not interlaced or the sizes differ.
+// The same for a scene that moves between the two fields of a frame: one picture per field, of
+// equal size. The iris meters the first one. Also throws base::Error (Input) if the camera is not
+// interlaced or the sizes differ.
 [[nodiscard]] Result degrade_fields(const base::Image& first, const base::Image& second,
                                     const CctvCamera& camera, const Monitor& monitor,
                                     const Options& options = {}, const Memory& before = {});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table. A new stage is its setting in stage/camera.h and a row here with its law: a map of
-// points, a filter, or a function of the picture in a file of parts/ with its twin in carry.cpp.
+// The table of stages. A new stage needs its setting in stage/camera.h and a row here with its law:
+// a point map, a filter, or a function of the picture in parts/ with its twin in carry.cpp.
 #include <cmath>
 
 #include "base/error.h"
@@ -13,7 +13,7 @@
 namespace earthshine::degrade {
 namespace {
 
-// Fields are counted through the sequence, so that each has noise of its own.
+// Fields are numbered throughout the sequence, so that each has different noise.
 NoiseKey noise_key(const StageContext& at) {
   const Options& options = at.setup.options;
   return {options.seed, 2 * options.frame + at.field, options.view};
@@ -21,7 +21,7 @@ NoiseKey noise_key(const StageContext& at) {
 
 double from_db(double db) { return std::pow(10.0, -db / 20.0); }
 
-// The mean over the fields.
+// Adds to the mean over the fields.
 void add_levels(Levels& sum, const Levels& field, std::uint64_t fields) {
   sum.saturated_share += field.saturated_share / static_cast<double>(fields);
   sum.crushed_share += field.crushed_share / static_cast<double>(fields);
@@ -60,7 +60,7 @@ Picture signal_noise(Picture&& p, const StageContext& at) {
 
 Picture lag(Picture&& p, const StageContext& at) {
   Picture& charge = at.memory.charge;
-  if (charge.planes.empty()) charge = p;  // no noise, nothing moved
+  if (charge.planes.empty()) charge = p;  // no noise, and the scene is still
   if (charge.columns != p.columns || charge.rows != p.rows ||
       charge.planes.size() != p.planes.size()) {
     const auto shape = [](const Picture& of) {
@@ -83,7 +83,7 @@ Picture levels(Picture&& p, const StageContext& at) {
 
 Picture saturate(Picture&& p, const StageContext& at) {
   const double most = at.setup.camera.saturation;
-  // Of the signal before bloom, as all shares are.
+  // Share of the signal before bloom, as all shares are.
   const double left = 1.0 - (1.0 - at.setup.camera.bloom) * at.report.excess_share;
   at.report.lost_share += left * share_above(p, most) / static_cast<double>(at.fields);
   return limit_above(std::move(p), most);

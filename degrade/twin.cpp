@@ -14,7 +14,7 @@
 namespace earthshine::degrade {
 namespace {
 
-// What the noise-free camera shows: at the start of its noise, when amplified, at the end.
+// Run without noise: the final result, and the signals before the noise and after amplification.
 struct StillRun {
   Result result;
   Picture exposed, amplified;
@@ -48,14 +48,14 @@ Picture variances(const Moments& m) {
   return picture;
 }
 
-// Luminance's share of each plane.
+// Weight of each plane in luminance.
 std::vector<double> weights(std::size_t planes) {
   if (planes == 1) return {1.0};
   return {base::luminance({1.0, 0.0, 0.0}), base::luminance({0.0, 1.0, 0.0}),
           base::luminance({0.0, 0.0, 1.0})};
 }
 
-// Planes have noise of their own, so their covariances add with the squares of the weights.
+// The noise of different planes is independent, so that covariances add with squared weights.
 Covariance luminance_noise(const Moments& m) {
   const std::vector<double> weight = weights(m.mean.planes.size());
   std::optional<Covariance> sum;
@@ -74,7 +74,7 @@ Plane mask(const Plane& values, F holds) {
   return out;
 }
 
-// The sum over the resels within `radius`, as far as they are in the picture.
+// Sum over the resels within `radius` that are in the picture.
 AxisMap box_sum(int size, int radius) {
   AxisMap map;
   map.in = size;
@@ -97,8 +97,8 @@ double count(const PlaneMap& box, std::size_t x, std::size_t y) {
                              (box.across.start[y + 1] - box.across.start[y]));
 }
 
-// A difference of two means of floats that is below this share of them is rounding: a flat picture
-// without noise shows no target.
+// A difference of two float means below this share of them is rounding: a flat picture without
+// noise shows no target.
 constexpr double rounding = 5e-7;
 
 double ratio(double signal, double noise) {
@@ -157,7 +157,7 @@ base::Image to_image(const Twin& twin, const Result& noisy) {
   add("twin", twin.viewed);
   add("mean", twin.viewed_mean);
   add("variance", twin.viewed_variance);
-  // Whole pixels to a resel, or the same grid where nothing spreads.
+  // An integer number of pixels per resel, or the same grid without spread.
   const std::size_t step = static_cast<std::size_t>(image.width / twin.signal.columns);
   const auto add_resels = [&](const std::string& name, const Plane& resels) {
     const std::size_t width = static_cast<std::size_t>(image.width);

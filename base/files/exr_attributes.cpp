@@ -52,8 +52,8 @@ Names within(const std::string& layer, const Names& words) {
   return names;
 }
 
-// The picture of one layer; "" is the file itself. Only there are X, Y and Z colours: in a layer
-// they are a position, and its Y is no luminance.
+// The picture of one layer; "" is the root of the file. X, Y and Z are colours in the root only: in
+// a layer they are a position, and its Y is not luminance.
 ExrPicture in_layer(const Names& channels, const std::string& layer) {
   for (const Names& words : colour_words) {
     const Names names = within(layer, words);
@@ -153,7 +153,7 @@ ExrPicture find_picture(const Names& channels) {
 }
 
 void check_exr_file(const std::filesystem::path& path) {
-  std::error_code other;  // such as no permission, which is said below
+  std::error_code other;  // such as missing permission; reported below
   if (!std::filesystem::exists(path, other) && !other) refuse_file(path, "there is no such file");
   check_input_file(path, {path.string()});
   std::string begin(4, '\0');

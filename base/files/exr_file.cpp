@@ -32,8 +32,8 @@ namespace {
 constexpr std::int64_t largest_edge_px = 16384;
 constexpr std::int64_t largest_sample_count = std::int64_t{1} << 30;  // 4 GiB as float
 
-// The library's own stream swallows a failure in its destructor, where the offset table is written;
-// this one remembers it.
+// The library's own stream ignores write errors in its destructor, where the offset table is
+// written. This one stores them.
 class CheckedStream : public Imf::OStream {
  public:
   explicit CheckedStream(const std::filesystem::path& path)
@@ -54,8 +54,8 @@ class CheckedStream : public Imf::OStream {
   }
   std::uint64_t tellp() override { return position_; }
   void seekp(std::uint64_t position) override {
-    // A device cannot seek; it does not need to unless bytes are rewritten, which write() would
-    // notice.
+    // A device cannot seek. That is harmless unless the library rewrites bytes; write() would then
+    // report the error.
     if (problem_ == 0 && ::fseeko(file_, static_cast<off_t>(position), SEEK_SET) != 0) {
       problem_ = errno;
       throw Iex::IoExc(reason());
@@ -82,7 +82,7 @@ class CheckedStream : public Imf::OStream {
   throw Error(Blame::Work, path.string(), "cannot be written: " + why, {}, write_elsewhere);
 }
 
-// Where no memory is left to pack rows with, the library leaves them out and says nothing.
+// If memory runs out while rows are compressed, the library omits them without an error.
 bool has_all_rows(const std::filesystem::path& path) {
   try {
     return Imf::InputFile(path.c_str(), 0).isComplete();
@@ -91,7 +91,8 @@ bool has_all_rows(const std::filesystem::path& path) {
   }
 }
 
-// A row of a channel in 16 bits: a second copy of all rows would cost half of the picture again.
+// One row of a channel in 16 bits: converting all rows at once would take half of the picture's
+// memory again.
 struct HalfRow {
   const Channel& channel;
   std::vector<Imath::half> values;
@@ -163,7 +164,7 @@ void write_exr(const std::filesystem::path& path, const Image& image, const ExrH
 
 namespace {
 
-// Before anything is allocated for the pixels.
+// Called before pixels are allocated.
 void check_header(const std::filesystem::path& path, const Imf::Header& header) {
   refuse_deep(path, header);
   const Imath::Box2i& window = header.dataWindow();
@@ -189,7 +190,7 @@ void check_header(const std::filesystem::path& path, const Imf::Header& header) 
   }
 }
 
-// Depth and the like may be infinite where nothing was hit; colour may not.
+// Colour must be finite. Depth and similar channels may be infinite where rays escape.
 void check_and_scale_colour(const std::filesystem::path& path, Image& image, float white) {
   for (Channel& channel : image.channels) {
     const std::string& name = channel.name;

@@ -105,7 +105,7 @@ ExrPicture checked_picture(const std::filesystem::path& path, const Imf::Header&
   return picture;
 }
 
-// From the file's colours to Rec. 709, for colours as rows; nothing where they are that already.
+// Matrix for row vectors from the file's primaries to Rec. 709; none if they are equal.
 std::optional<Imath::M44f> colour_matrix(const std::filesystem::path& path,
                                          const Imf::Header& header, ExrPicture::Kind kind) {
   const Imf::Chromaticities rec709;  // the default

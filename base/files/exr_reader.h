@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture of any linear OpenEXR file, as much of it at a time as one wants.
+// Reads the picture of any linear OpenEXR file in blocks of rows.
 #pragma once
 
 #include <filesystem>
@@ -10,25 +10,25 @@
 
 namespace earthshine::base {
 
-// What becomes the picture:
-//   part      the first flat part that has a picture, else the first
-//   channels  R, G, B (also r, g, b and red, green, blue) or X, Y, Z or Y (also luminance, L); of
-//   the
-//             file itself, or of its only layer that has them, or of the only one called Combined.
-//             Alpha is left out: OpenEXR's colours are premultiplied, they are the light that comes
-//             from the pixel. Everything else is left out too.
-//   colours   chromaticities other than Rec. 709 and XYZ are brought to Rec. 709 by their matrix,
-//             without adapting the white
+// The picture of a file:
+//   part      the first flat part with a picture, else the first part
+//   channels  R, G, B (or r, g, b, or red, green, blue), else X, Y, Z, else Y (or luminance, L).
+//             They are in the root, or in the only layer that has them, or in the only layer
+//             called Combined. Alpha and all other channels are ignored: the colours of
+//             OpenEXR are premultiplied and are already the light of the pixel.
+//   colours   XYZ and other chromaticities are converted to Rec. 709 by a matrix, without
+//             adaptation of the white point
 //   unit      cd/m^2: values times whiteLuminance
-//   window    the pixels of the data window that lie in the display window (exr_window.h).
-//             header().whole tells a crop from a whole picture.
-// Half, float and whole numbers, scan lines or tiles, any compression of the library.
+//   window    intersection of data window and display window (exr_window.h);
+//             header().whole has its position, for crops
+// Half, float and integer channels, scan lines or tiles, all compressions of the library.
 class ExrReader {
  public:
-  // Reads the header alone, and makes sure that the pixels are there. Throws base::Error (Input):
-  // missing, broken, incomplete, deep; no such channels (with those that it has) or several layers
-  // of them; channels of reduced resolution; no pixel in the display window; pixels that are not square; more than 65536 on an edge
-  // or 2^30 pixels.
+  // Reads the header and checks that all pixels are stored. Throws base::Error (Input) for a file
+  // that is missing, broken, incomplete or deep; without such channels (the message lists its
+  // channels), with several candidate layers or with channels of reduced resolution; without a
+  // pixel in the display window; with pixels that are not square; with more than 65536 pixels on an
+  // edge or 2^30 in all.
   explicit ExrReader(const std::filesystem::path& path);
   ~ExrReader();
   ExrReader(const ExrReader&) = delete;
@@ -39,8 +39,8 @@ class ExrReader {
   [[nodiscard]] int channel_count() const;  // 3: R, G, B; 1: Y
   [[nodiscard]] const ExrHeader& header() const;
 
-  // Rows [first, first + count): R, G, B or Y. Throws base::Error (Input) for broken data and for a
-  // pixel that is NaN or infinite, with its place in the picture.
+  // Rows [first, first + count) as R, G, B or Y. Throws base::Error (Input) for broken data and for
+  // a NaN or infinite pixel, with its position.
   [[nodiscard]] Image read_rows(int first, int count);
 
  private:

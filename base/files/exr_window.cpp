@@ -59,7 +59,7 @@ Image read_window(Imf::MultiPartInputFile& file, int part, const std::vector<std
                   const Imath::Box2i& window, int first, int count) {
   const Imath::Box2i& data = file.header(part).dataWindow();
   const int y = window.min.y + first;
-  // The library wants room for every column of the data window.
+  // The library needs room for every column of the data window.
   Image lines{data.max.x - data.min.x + 1, count, {}};
   lines.channels.reserve(channels.size());
   Imf::FrameBuffer buffer;

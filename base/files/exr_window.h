@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which pixels of an OpenEXR file are its picture, and reading these alone. For exr_file.cpp and
+// Window of an OpenEXR file that is its picture, and reading this window. For exr_file.cpp and
 // exr_reader.cpp.
 #pragma once
 
@@ -15,19 +15,17 @@
 
 namespace earthshine::base {
 
-// The display window is the picture and the data window holds the pixels that are stored
-// ("Technical Introduction to OpenEXR"): the picture's stored pixels are the intersection. What the
-// data window has beyond a border of the display window is overscan, which nobody sees. Throws
-// base::Error (Input) where the two have no pixel in common.
+// Intersection of the display window (the picture) and the data window (the stored pixels;
+// "Technical Introduction to OpenEXR"). Pixels outside the display window are overscan and are
+// ignored. Throws base::Error (Input) if the windows do not intersect.
 [[nodiscard]] Imath::Box2i picture_window(const std::filesystem::path& path,
                                           const Imf::Header& header);
 
-// The display window and where in it the picture_window begins; without columns if the two are the
-// same, so that the file has the whole picture.
+// The display window and the position of picture_window in it; columns = 0 if they are equal, which
+// means that the file has the whole picture.
 [[nodiscard]] ExrHeader::Whole whole_of(const Imf::Header& header, const Imath::Box2i& window);
 
-// Rows [first, first + count) of the window, its columns alone. Of each channel a float image by
-// the file's name for it.
+// Rows [first, first + count) of the window. One float channel for each name in `channels`.
 [[nodiscard]] Image read_window(Imf::MultiPartInputFile& file, int part,
                                 const std::vector<std::string>& channels,
                                 const Imath::Box2i& window, int first, int count);

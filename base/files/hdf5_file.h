@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writing and reading HDF5. hdf5_writer.cpp and hdf5_reader.cpp are the only users of the
-// library.
+// Writes and reads HDF5. Only hdf5_writer.cpp and hdf5_reader.cpp use the library.
 //
-// A file is made and read in memory: what can go wrong with a disk is then the business of
-// output_file.h, not of a library that reports a full disk when it closes. In front stands a user
-// block, which HDF5's readers pass over, with a seal: the digest of all that follows. A file that
-// was changed afterwards never reaches the library, which older versions do not survive.
+// Files are built and parsed in memory, so that output_file.h handles all disk errors: the library
+// reports a full disk only on close. A user block, which HDF5 readers skip, precedes the data and
+// has a seal: the digest of the data. A changed file fails this check and never reaches the
+// library, because older versions crash on corrupt files.
 #pragma once
 
 #include <cstddef>
@@ -34,13 +33,13 @@ inline constexpr Hdf5Number hdf5_number<float> = Hdf5Number::Float32;
 template <>
 inline constexpr Hdf5Number hdf5_number<double> = Hdf5Number::Float64;
 
-// What a data set's attributes say about it; empty ones are left out.
+// Attributes of a data set; empty ones are not written.
 struct Hdf5Meaning {
   std::string_view unit, meaning;
 };
 
-// Names may lead through groups: "ledger/emitted_lm". The same calls give the same bytes. Throws
-// base::Error (Work), as out of memory.
+// Names may contain groups: "ledger/emitted_lm". Equal calls give equal bytes. Throws base::Error
+// (Work), for example out of memory.
 class Hdf5Writer {
  public:
   Hdf5Writer();
@@ -48,7 +47,7 @@ class Hdf5Writer {
   Hdf5Writer(const Hdf5Writer&) = delete;
   Hdf5Writer& operator=(const Hdf5Writer&) = delete;
 
-  // values: as many as the shape says, the last dimension running fastest.
+  // values: in row-major order, as many as the shape has.
   template <class T>
   void array(const std::string& name, std::span<const T> values, const Hdf5Shape& shape,
              const Hdf5Meaning& meaning) {
@@ -56,10 +55,10 @@ class Hdf5Writer {
   }
   void texts(const std::string& name, const std::vector<std::string>& values,
              const Hdf5Meaning& meaning);
-  // Of the file as a whole.
+  // Attribute of the whole file.
   void attribute(const std::string& name, const Hdf5Value& value);
 
-  // The file's bytes, seal included. The writer is spent.
+  // Returns the file's bytes with the seal. Call it once, as the last call.
   [[nodiscard]] std::string finish();
 
  private:
@@ -70,11 +69,12 @@ class Hdf5Writer {
   std::unique_ptr<File> file_;
 };
 
-// Each call throws base::Error (Input) at the file's name for what is missing or of another type or
-// shape; nothing is allocated that the file's own size does not warrant.
+// Every read throws base::Error (Input), with the file's name, if the data set is missing or has
+// another type or shape. Allocations are bounded by the file's size.
 class Hdf5Reader {
  public:
-  // name: the file's, for messages. Throws base::Error (Input) when the seal is missing or broken.
+  // name: the file's name, for messages. Throws base::Error (Input) if the seal is missing or
+  // wrong.
   Hdf5Reader(std::string bytes, std::string name);
   ~Hdf5Reader();
   Hdf5Reader(const Hdf5Reader&) = delete;
@@ -94,7 +94,7 @@ class Hdf5Reader {
   [[nodiscard]] double number_attribute(const std::string& name) const;
   [[nodiscard]] std::uint64_t count_attribute(const std::string& name) const;
 
-  // Throws base::Error (Input): the file is not what it should be.
+  // Throws base::Error (Input): the file is invalid.
   [[noreturn]] void fail(const std::string& found) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What hdf5_writer.cpp and hdf5_reader.cpp share: the only users of the library.
+// Shared by hdf5_writer.cpp and hdf5_reader.cpp, the only users of the library.
 #pragma once
 
 #include <hdf5.h>
@@ -12,7 +12,7 @@
 
 namespace earthshine::base {
 
-// An identifier of the library, given back at the end of its scope.
+// RAII: an identifier of the library.
 class Hdf5Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -32,20 +32,20 @@ class Hdf5Handle {
   Close close_;
 };
 
-// The deepest reason the library has for its last failure.
+// Innermost message of the library's last error.
 [[nodiscard]] std::string hdf5_reason();
 
-// The type in the file, the same on every machine.
+// Type in the file, independent of the machine.
 [[nodiscard]] hid_t hdf5_type(Hdf5Number number);
 
-// How a file in memory is opened. From here on the library is silent: failures are thrown.
+// Access properties for a file in memory. Also switches off the library's error output.
 [[nodiscard]] Hdf5Handle hdf5_memory_access();
 
-inline constexpr std::size_t hdf5_block_bytes = 512;  // the least allowed for a user block
-// The block that goes in front of this content.
+inline constexpr std::size_t hdf5_block_bytes = 512;  // smallest user block that HDF5 allows
+// The user block for this content.
 [[nodiscard]] std::string hdf5_seal(std::string_view content);
 
-// Throws base::Error (Work) with the library's reason when an identifier or a result is negative.
+// Throw base::Error (Work) with the library's message if an identifier or a result is negative.
 [[noreturn]] void hdf5_fail();
 template <class Result>
 Result hdf5_made(Result result) {

@@ -11,7 +11,7 @@ namespace earthshine::base {
 namespace {
 
 constexpr std::size_t longest_text = std::size_t{1} << 16;
-// Deflate packs nothing to less than a 1032nd.
+// Deflate compresses by at most a factor of 1032.
 constexpr std::size_t most_unpacked = 1100;
 
 std::string shape_text(const Hdf5Shape& shape) {
@@ -23,7 +23,7 @@ bool is_text(hid_t type) {
          H5Tget_size(type) > 0 && H5Tget_size(type) <= longest_text;
 }
 
-// Up to the zeros that pad it.
+// Without the zeros that pad it.
 std::string text_at(const std::string& table, std::size_t at, std::size_t width) {
   const std::string text = table.substr(at, width);
   return text.substr(0, text.find('\0'));
@@ -35,8 +35,8 @@ struct Hdf5Reader::File {
   Hdf5Handle handle;
   std::size_t bytes = 0;
 
-  // The data set of that name, kept in this file itself; an invalid handle otherwise. A link could
-  // lead to another file, and so could data kept outside or put together from elsewhere.
+  // The data set of that name; an invalid handle if it is missing or not stored in this file. Soft
+  // and external links, external storage and virtual data sets could read other files.
   [[nodiscard]] Hdf5Handle open(const std::string& name) const {
     for (std::size_t end = name.find('/');; end = name.find('/', end + 1)) {
       H5L_info_t link{};
@@ -70,8 +70,8 @@ Hdf5Reader::Hdf5Reader(std::string bytes, std::string name) : name_(std::move(na
     fail("its seal is broken: it was cut off or changed after it was written");
   }
   const Hdf5Handle access = hdf5_memory_access();
-  hdf5_made(H5PLset_loading_state(0));  // a file may not ask for code
-  // The library takes a copy.
+  hdf5_made(H5PLset_loading_state(0));  // forbids plug-ins: a file must not load code
+  // The library copies the bytes.
   hdf5_made(H5Pset_file_image(access.id(), bytes.data() + hdf5_block_bytes,
                               bytes.size() - hdf5_block_bytes));
   Hdf5Handle handle(H5Fopen("memory", H5F_ACC_RDONLY, access.id()), H5Fclose);
@@ -114,7 +114,7 @@ std::size_t Hdf5Reader::checked_count(const std::string& name, Hdf5Number number
     if (count > std::numeric_limits<std::size_t>::max() / extent) fail("it is too large");
     count *= extent;
   }
-  // A small file may claim any extent: what was never stored would be read as zeros.
+  // A small file may claim any shape; the library would return zeros for missing data.
   const std::size_t stored = std::min<std::size_t>(H5Dget_storage_size(set.id()), file_->bytes);
   if (count / most_unpacked > stored / H5Tget_size(type.id())) {
     fail(fmt::format("\"{}\" was not stored in full", name));

@@ -44,14 +44,14 @@ std::size_t count_of(const Hdf5Shape& shape) {
   return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
 }
 
-// The time at which a part was made is left out: same data, same bytes.
+// Without creation times, so that equal data give equal bytes.
 Hdf5Handle timeless(hid_t kind) {
   Hdf5Handle properties = hdf5_made(Hdf5Handle(H5Pcreate(kind), H5Pclose));
   hdf5_made(H5Pset_obj_track_times(properties.id(), false));
   return properties;
 }
 
-// Compressed in chunks of whole rows, where that is worth it and the library can.
+// Chunks of whole rows, compressed if the data set is large enough and the library has deflate.
 Hdf5Handle dataset_properties(const Hdf5Shape& shape, std::size_t value_bytes) {
   Hdf5Handle properties = timeless(H5P_DATASET_CREATE);
   const std::size_t total = count_of(shape) * value_bytes;
@@ -124,8 +124,8 @@ Hdf5Handle hdf5_memory_access() {
   hdf5_made(H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr));
   Hdf5Handle access = hdf5_made(Hdf5Handle(H5Pcreate(H5P_FILE_ACCESS), H5Pclose));
   hdf5_made(H5Pset_fapl_core(access.id(), growth_bytes, false));
-  // The oldest layout: the head of later ones carries a checksum, which H5Fget_file_image of 1.10
-  // gets wrong.
+  // The oldest layout: the superblock of later ones has a checksum, which H5Fget_file_image of HDF5
+  // 1.10 computes wrongly.
   hdf5_made(H5Pset_libver_bounds(access.id(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18));
   return access;
 }
@@ -146,7 +146,7 @@ struct Hdf5Writer::File {
 Hdf5Writer::Hdf5Writer() {
   const Hdf5Handle access = hdf5_memory_access();
   const Hdf5Handle creation = timeless(H5P_FILE_CREATE);
-  // A name must be given; nothing of that name is made.
+  // The name is required, but no file is created.
   file_ = std::make_unique<File>(File{hdf5_made(
       Hdf5Handle(H5Fcreate("memory", H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose))});
 }

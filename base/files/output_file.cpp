@@ -29,11 +29,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// ".NAME.PROCESS-NUMBER.part": unique among the processes and the files of this one; a leading dot
-// keeps it out of `*.exr`.
+// ".NAME.PROCESS-NUMBER.part": unique among processes and the files of this process. The leading
+// dot hides it from `*.exr`.
 constexpr std::string_view suffix = ".part";
 
-// Long names are shortened: name and mark together must stay below the usual limit of 255 bytes.
+// Shortens long names: name and mark must fit into the usual limit of 255 bytes.
 fs::path temporary_beside(const fs::path& target) {
   static std::atomic<unsigned> count{0};
   const std::string mark = std::to_string(::getpid()) + "-" + std::to_string(count++);
@@ -41,7 +41,7 @@ fs::path temporary_beside(const fs::path& target) {
          ("." + target.filename().string().substr(0, 200) + "." + mark + std::string(suffix));
 }
 
-// The process that a temporary file is named after; 0 for other files.
+// Process number in the name of a temporary file; 0 for other files.
 pid_t writer_of(const std::string& name) {
   if (name.size() <= suffix.size() || name[0] != '.' || !name.ends_with(suffix)) return 0;
   const std::string stem = name.substr(0, name.size() - suffix.size());
@@ -52,7 +52,7 @@ pid_t writer_of(const std::string& name) {
   return sound ? std::max(process, 0) : 0;
 }
 
-// Whoever writes a temporary file holds a lock on it, which ends with the process however that
+// The writer of a temporary file holds a lock on it. The lock ends with the process, however it
 // ends.
 bool lock(int file) { return ::flock(file, LOCK_EX | LOCK_NB) == 0; }
 
@@ -64,8 +64,8 @@ bool others_see_locks_on(int file) {
          others_see_locks(text, major(status.st_dev), minor(status.st_dev));
 }
 
-// Removes the file if a run that was killed has left it: its process is gone, and nobody holds it,
-// such as one of another machine or container with that number.
+// Removes a temporary file of a killed run: its process is gone and the file is not locked. A lock
+// may belong to a process with the same number on another machine or in another container.
 void remove_if_abandoned(const fs::path& path) {
   const pid_t process = writer_of(path.filename().string());
   if (process == 0 || ::kill(process, 0) == 0 || errno != ESRCH) return;
@@ -75,8 +75,8 @@ void remove_if_abandoned(const fs::path& path) {
   ::close(file);
 }
 
-// The temporary files that stand, as names that live as long as their OutputFile. More at once than
-// the list is long are not cleared away when a signal ends the program.
+// Names of the existing temporary files; each lives as long as its OutputFile. A signal handler
+// removes them. Files beyond the list's capacity are not removed then.
 std::array<std::atomic<const char*>, 32> unfinished{};
 static_assert(std::atomic<const char*>::is_always_lock_free, "read in a signal handler");
 
@@ -99,14 +99,14 @@ void flush_folder(const fs::path& folder) {
   ::close(open);
 }
 
-// /dev/stdout leads to "pipe:[1234]", which is nowhere.
+// /dev/stdout is a link to "pipe:[1234]", which is not a path.
 bool has_no_name(const fs::path& path) {
   std::error_code problem;
   static_cast<void>(fs::canonical(path, problem));
   return static_cast<bool>(problem);
 }
 
-// A run may write thousands of files into one folder, and looks through it once.
+// Once per folder: a run may write thousands of files into it.
 void clear_once(const fs::path& folder) {
   static std::mutex mutex;
   static std::set<fs::path> cleared;
@@ -117,7 +117,7 @@ void clear_once(const fs::path& folder) {
   remove_abandoned_files(folder);
 }
 
-// Follows links, so that a link is kept and the file it names is replaced.
+// Resolves links: the link stays and its target is replaced.
 fs::path follow_links(const fs::path& path) {
   std::error_code ignored;
   if (!fs::is_symlink(path, ignored)) return path;
@@ -130,7 +130,7 @@ fs::path follow_links(const fs::path& path) {
 bool another_rank_writes() { return ranks() != nullptr && ranks()->number() > 0; }
 
 OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
-  if (another_rank_writes()) {  // whose machine need not have the folder
+  if (another_rank_writes()) {  // the folder may not exist on this machine
     temporary_ = "/dev/null";
     return;
   }
@@ -157,9 +157,8 @@ OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
     throw Error(Blame::Work, name, "cannot be written: " + system_reason(errno));
   }
   if (fs::exists(status) && !fs::is_regular_file(status)) {
-    // Written directly: renaming would replace /dev/null by a plain file. A pipe with a name keeps
-    // the opening waiting for somebody who reads; one without is /dev/stdout, which is open
-    // already.
+    // Written directly: renaming would replace /dev/null by a plain file. Opening a named pipe
+    // blocks until it has a reader; a pipe without a name is /dev/stdout, which is already open.
     if (!fs::is_character_file(status) && !(fs::is_fifo(status) && has_no_name(target_))) {
       throw Error(Blame::Input, name, "is a pipe or a device", "a file on disk is wanted here",
                   "Name a file to write");
@@ -170,7 +169,7 @@ OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
   clear_once(folder);
   do {
     temporary_ = temporary_beside(target_);
-    // Before it is there: a signal may come at any time.
+    // Listed before it exists, because a signal may arrive at any time.
     unfinished_ = list_unfinished(temporary_.c_str());
     file_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file_ < 0 && unfinished_ != nullptr) unfinished_->store(nullptr);
@@ -179,22 +178,22 @@ OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
     throw Error(Blame::Work, name,
                 "cannot be written: folder " + folder.string() + ": " + system_reason(errno));
   }
-  static_cast<void>(lock(file_));  // some file systems know no locks
+  static_cast<void>(lock(file_));  // some file systems have no locks
 }
 
 OutputFile::~OutputFile() {
   if (file_ < 0) return;
   if (!committed_) ::unlink(temporary_.c_str());
   if (unfinished_ != nullptr) unfinished_->store(nullptr);
-  ::close(file_);  // and with it the lock
+  ::close(file_);  // this releases the lock
 }
 
 void OutputFile::commit() {
   if (file_ >= 0) {
     struct stat old {};
     if (::stat(target_.c_str(), &old) == 0) static_cast<void>(::fchmod(file_, old.st_mode & 07777));
-    // First the bytes, then the name, then the folder: after a loss of power there is the old file
-    // or the new one. Where a folder cannot be flushed the file system does so in its own time.
+    // Flush the file, rename it, then flush the folder: after a power failure the old or the new
+    // file is complete. If the folder cannot be flushed, the file system does so later.
     if (::fsync(file_) != 0 && errno != EINVAL) refuse(errno);
     if (::rename(temporary_.c_str(), target_.c_str()) != 0) refuse(errno);
     flush_folder(folder_of(target_));
@@ -202,9 +201,9 @@ void OutputFile::commit() {
   committed_ = true;
 }
 
-// A link is made or not made in one step, on NFS too, where a lock or a look beforehand would not
-// do. An answer that was lost on the way is asked for again there, and refused although the link
-// was made: then the file has two names. File systems without links have the rename alone.
+// link() is atomic also on NFS, where a lock or a test for existence is not. If NFS loses a reply,
+// it repeats the request and reports EEXIST although the link was made; the file then has two
+// names. File systems without links use rename.
 bool OutputFile::commit_if_new() {
   if (file_ < 0) return true;  // a device
   if (::fsync(file_) != 0 && errno != EINVAL) refuse(errno);
@@ -262,7 +261,7 @@ void remove_abandoned_files(const fs::path& folder) {
 
 namespace {
 
-// Into the temporary file, down to the disk.
+// Writes to the temporary file.
 void write_aside(const OutputFile& output, const fs::path& path, std::string_view text) {
   const auto close = [](std::FILE* f) { std::fclose(f); };
   std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(output.temporary().c_str(), "wb"),
@@ -270,7 +269,7 @@ void write_aside(const OutputFile& output, const fs::path& path, std::string_vie
   if (!file) throw Error(Blame::Work, path.string(), "cannot be written: " + system_reason(errno));
   errno = 0;
   const bool written = std::fwrite(text.data(), 1, text.size(), file.get()) == text.size();
-  // A full disk may show only when buffers are flushed or the file is closed.
+  // A full disk may cause an error only at the flush or the close.
   const bool flushed = written && std::fflush(file.get()) == 0;
   int problem = flushed ? 0 : errno;
   if (std::fclose(file.release()) != 0 && problem == 0) problem = errno;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files are written aside, flushed to the disk and renamed, so that a reader never sees half a file
-// and a failure, a kill or a loss of power keeps the old one.
+// Output files are written to a temporary file, flushed to disk and renamed. Readers never see a
+// partial file, and a failure, a kill or a power failure keeps the old one.
 #pragma once
 
 #include <atomic>
@@ -10,16 +10,16 @@
 
 namespace earthshine::base {
 
-// What to do where a file cannot be written.
+// Remedy in messages about files that cannot be written.
 inline constexpr const char* write_elsewhere =
     "Free some space or write elsewhere; an older file of that name was kept";
 
-// A temporary file beside `target`, empty and locked; commit() renames it over the target, the
-// destructor removes it if commit() was not reached. What killed runs left in its folder is
-// cleared. Of several ranks (base/ranks) the first alone writes: the others have /dev/null there.
-// Throws base::Error (Input) if the target's folder does not exist or the target is a
-// folder, a pipe or a device other than those that never wait, such as /dev/null; and base::Error
-// (Work) where nothing can be written, also from commit().
+// A temporary file beside `target`, empty and locked. commit() renames it to the target; without
+// commit() the destructor removes it. The constructor also removes temporary files of killed runs
+// from the folder. With several ranks (base/ranks) only the first one writes; the others get
+// /dev/null. Throws base::Error (Input) if the target's folder does not exist or the target is a
+// folder, a pipe or a device, except devices that never block, such as /dev/null. Throws
+// base::Error (Work) if the file cannot be written, also from commit().
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& target);
@@ -29,8 +29,8 @@ class OutputFile {
 
   [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
   void commit();
-  // The same only where the target is not there yet: false, and nothing is changed, if it is. Of
-  // several processes that write one file exactly one gets true.
+  // Commits only if the target does not exist; else returns false and changes nothing. Of several
+  // processes with one target exactly one gets true.
   [[nodiscard]] bool commit_if_new();
 
  private:
@@ -38,30 +38,29 @@ class OutputFile {
 
   std::filesystem::path target_, temporary_;
   int file_ = -1;                                   // the temporary file, locked; -1: none
-  std::atomic<const char*>* unfinished_ = nullptr;  // its place in the list of what stands
+  std::atomic<const char*>* unfinished_ = nullptr;  // its entry in the list of temporary files
   bool committed_ = false;
 };
 
-// Whether this is a rank whose files are not wanted: what is written to them need not be made.
+// True on ranks whose output files are discarded, so that they can skip producing them.
 [[nodiscard]] bool another_rank_writes();
 
-// For a signal handler that ends the program: removes the temporary files that stand. Calls
-// nothing but unlink.
+// Removes all temporary files of this process. For signal handlers: it only calls unlink.
 void remove_unfinished_files() noexcept;
 
-// Removes the temporary files in a folder whose process is gone and that nobody holds: runs that
-// were killed had no time to. Nothing where another machine's lock would not be seen.
+// Removes temporary files that killed runs left in a folder: their process is gone and they are not
+// locked. Keeps all files if locks of other machines are not visible.
 void remove_abandoned_files(const std::filesystem::path& folder);
 
-// By the text of /proc/self/mountinfo: whether flock() on a file of that device holds among
-// machines. Not on NFS mounted with local_lock=flock or all (as with nolock), nor on Lustre with
-// localflock.
+// Whether flock() on a file of this device works between machines, from the text of
+// /proc/self/mountinfo. False for NFS mounted with local_lock=flock or all (also nolock) and for
+// Lustre with localflock.
 [[nodiscard]] bool others_see_locks(const std::string& mounts, unsigned major, unsigned minor);
 
-// Writes text to a file, aside and renamed. Throws as OutputFile does, and base::Error (Work) on a
-// full disk.
+// Writes text by a temporary file and a rename. Throws as OutputFile does, and base::Error (Work)
+// if the disk is full.
 void write_text(const std::filesystem::path& path, std::string_view text);
-// The same for a file that is not there yet; false, and nothing is changed, if it is.
+// The same, only if the file does not exist; else returns false and changes nothing.
 [[nodiscard]] bool write_new_text(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace earthshine::base

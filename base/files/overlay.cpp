@@ -35,7 +35,8 @@ std::vector<float> line_coverage(int width, int height, std::span<const Line> li
     return static_cast<int>(std::clamp(std::ceil(high + reach + 0.5), 0.0, double(end)));
   };
   for (const Line& line : lines) {
-    // Row by row only the pixels near the line: a long diagonal does not visit its whole box.
+    // Visits only pixels near the line in each row, because the bounding box of a long diagonal is
+    // large.
     const int y_end = last(std::max(line.y0, line.y1), height);
     for (int y = first(std::min(line.y0, line.y1), height); y < y_end; ++y) {
       double low = std::min(line.x0, line.x1), high = std::max(line.x0, line.x1);

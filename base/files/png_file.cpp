@@ -19,8 +19,8 @@ namespace {
 
 using Texts = std::vector<std::pair<std::string, std::string>>;
 
-// libpng reports failure by a long jump, which must not cross a C++ object with a destructor:
-// everything of that kind lives in the caller, and the message is kept here.
+// libpng reports errors by longjmp, which must not skip a destructor. The callers own all objects
+// with destructors; the message is stored here.
 struct Sink {
   std::string bytes;
   char message[128] = {};
@@ -59,7 +59,7 @@ std::vector<png_text> text_chunks(const Texts& texts) {
                   "keywords have 1 to 79 ASCII characters");
     }
     png_text chunk{};
-    // tEXt holds Latin-1; other letters need iTXt, which holds UTF-8.
+    // tEXt is Latin-1; other letters need iTXt, which is UTF-8.
     chunk.compression = is_ascii(value) ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
     chunk.key = const_cast<char*>(keyword.c_str());
     chunk.text = const_cast<char*>(value.c_str());
@@ -81,10 +81,10 @@ struct Picture {
   int text_count;
 };
 
-// Of the payload bay 4 % more bytes than by level 6, in 0.36 of the time.
+// On the payload bay, 4 % more bytes than level 6 in 0.36 of the time.
 constexpr int compression_level = 4;
 
-// Holds nothing with a destructor (see Sink). Returns false when libpng failed.
+// No objects with destructors here (see Sink). Returns false if libpng failed.
 bool encode(png_structp png, png_infop info, const Picture& picture) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_IHDR(png, info, picture.width, picture.height, 8, picture.colour_type, PNG_INTERLACE_NONE,
@@ -98,8 +98,8 @@ bool encode(png_structp png, png_infop info, const Picture& picture) {
   return true;
 }
 
-// libpng reports failure by a long jump, which must not cross a C++ object with a destructor:
-// everything of that kind lives in the caller, and the message is kept here.
+// libpng reports errors by longjmp, which must not skip a destructor. The callers own all objects
+// with destructors; the message is stored here.
 struct Source {
   std::ifstream file;
   char message[128] = {};
@@ -132,11 +132,11 @@ struct Reader {
   Reader& operator=(const Reader&) = delete;
 };
 
-// The two steps hold nothing with a destructor (see Source) and return false when libpng failed.
+// No objects with destructors here (see Source). Both steps return false if libpng failed.
 bool read_header(const Reader& r, Source& source) {
   if (setjmp(png_jmpbuf(r.png)) != 0) return false;
   png_set_read_fn(r.png, &source, take_bytes);
-  // Ours is the limit that says what it is.
+  // read_png has its own limit and message.
   png_set_user_limits(r.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
   png_read_info(r.png, r.info);
   png_set_expand(r.png);  // palette and small greys to 8 bits, transparency to alpha

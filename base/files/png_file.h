@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading and writing PNG files (libpng; png_file.cpp is its only user).
+// Reads and writes PNG files (libpng; only png_file.cpp uses it).
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace earthshine::base {
 
-// pixels: width * height * channels bytes, rows from the top; channels 1 (grey) or 3 (RGB), sRGB
-// encoded. text: tEXt chunks (keyword up to 79 characters). Written aside and renamed. Throws
-// base::Error (Work) when the file cannot be written.
+// pixels: width * height * channels bytes in rows from the top, sRGB encoded; channels is 1 (grey)
+// or 3 (RGB). text: tEXt chunks with keywords of up to 79 characters. Writes a temporary file and
+// renames it. Throws base::Error (Work) if the file cannot be written.
 void write_png(const std::filesystem::path& path, int width, int height, int channels,
                std::span<const std::uint8_t> pixels,
                const std::vector<std::pair<std::string, std::string>>& text = {});
 
-// 8 bits per channel, as a screen shows them.
+// 8 bits per channel, in display values.
 struct Picture8 {
   int width = 0;
   int height = 0;
@@ -27,9 +27,9 @@ struct Picture8 {
 
 inline constexpr int largest_png_edge_px = 16384;
 
-// Any PNG: grey, palette or RGB of 1 to 16 bits, interlaced or not. 16 bits are rounded to 8, what
-// is transparent is laid on black; profiles and gamma are not applied. Throws base::Error (Input)
-// for a file that is missing, another format, broken, cut short or larger than 16384 pixels an
+// Reads any PNG: grey, palette or RGB of 1 to 16 bits, interlaced or not. 16 bits are rounded to 8,
+// transparent pixels are blended over black, profiles and gamma are ignored. Throws base::Error
+// (Input) if the file is missing, not a PNG, broken, truncated or larger than 16384 pixels on an
 // edge.
 [[nodiscard]] Picture8 read_png(const std::filesystem::path& path);
 

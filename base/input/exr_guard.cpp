@@ -17,8 +17,8 @@
 namespace earthshine::base {
 namespace {
 
-// The library reads values of these types by the type alone, whatever size the file gives them, and
-// would take for names and sizes of what follows what this reader takes for something else.
+// The library reads values of these types with the size of the type, whatever size the file states.
+// It would then read the next attribute from another position than this reader.
 std::optional<std::uint64_t> size_of(std::string_view type) {
   constexpr std::pair<std::string_view, std::uint64_t> sizes[] = {{"box2i", 16},
                                                                   {"box2f", 16},
@@ -50,12 +50,12 @@ std::optional<std::uint64_t> size_of(std::string_view type) {
   return {};
 }
 
-// Bytes of a value, from its front.
+// Reads the bytes of a value from the front.
 class Value {
  public:
   explicit Value(std::string_view bytes) : left_(bytes) {}
   [[nodiscard]] std::uint64_t left() const { return left_.size(); }
-  [[nodiscard]] std::uint64_t number() {  // past the end: more than any file has
+  [[nodiscard]] std::uint64_t number() {  // past the end: larger than any file
     if (left_.size() < 4) return std::uint64_t{1} << 40U;
     std::uint64_t value = 0;
     for (std::size_t k = 4; k-- > 0;) value = value << 8U | static_cast<unsigned char>(left_[k]);
@@ -67,7 +67,7 @@ class Value {
     left_.remove_prefix(count);
     return true;
   }
-  // A name and its zero byte: its length, or nothing if it has no end.
+  // Skips a name and its zero byte. Returns the length; empty if the zero byte is missing.
   std::optional<std::size_t> name() {
     const std::size_t length = left_.find('\0');
     if (length == std::string_view::npos) return {};
@@ -79,14 +79,15 @@ class Value {
   std::string_view left_;
 };
 
-// These must be read; other types are skipped unread.
+// These types must be parsed; others are skipped.
 bool tells_its_size(std::string_view type) {
   return type == "chlist" || type == "stringvector" || type == "preview";
 }
 
-// Whether a value that says itself how far it goes ends where its size says.
+// Whether a value that contains its own length ends at the stated size.
 bool is_whole(std::string_view type, Value value) {
-  if (type == "chlist") {  // names, each with 16 bytes about the channel; an empty one ends them
+  if (type == "chlist") {  // names, each with 16 bytes about its channel; an empty name ends the
+                           // list
     constexpr std::uint64_t bytes_per_channel = 16;
     while (true) {
       const auto length = value.name();
@@ -100,7 +101,7 @@ bool is_whole(std::string_view type, Value value) {
       if (!value.skip(value.number())) return false;
     }
   }
-  if (type == "preview") {  // columns, rows, four bytes a pixel
+  if (type == "preview") {  // columns, rows, 4 bytes per pixel
     const std::uint64_t columns = value.number(), rows = value.number();
     return columns <= value.left() && rows <= value.left() && 4 * columns * rows == value.left();
   }
@@ -108,8 +109,8 @@ bool is_whole(std::string_view type, Value value) {
 }
 
 // "Technical Introduction to OpenEXR": a magic number, a version with flags, then one header, or
-// several of them and an empty one. A header is a row of attributes, each a name and a type, ended
-// by a zero byte each, a size in bytes and a value, and ends with a zero byte.
+// several headers and an empty one. A header is a list of attributes and ends with a zero byte. An
+// attribute has a name and a type, each with a zero byte, a size in bytes and a value.
 class HeaderReader {
  public:
   explicit HeaderReader(const std::filesystem::path& path)
@@ -150,7 +151,7 @@ class HeaderReader {
     throw Error(Blame::Input, path_.string(), found, {}, "Copy it again");
   }
 
-  // False for an empty one, which ends a row of them.
+  // False for an empty header, which ends the list.
   bool header() {
     bool any = false;
     while (true) {
@@ -187,7 +188,7 @@ class HeaderReader {
   }
 
   void check_chunks(std::uint64_t chunks) const {
-    constexpr std::uint64_t bytes_per_chunk = 8;  // of the table alone
+    constexpr std::uint64_t bytes_per_chunk = 8;  // in the offset table
     if (chunks * bytes_per_chunk > size_) {
       refuse(fmt::format("announces {} chunks of pixels and has {} bytes", chunks, size_));
     }

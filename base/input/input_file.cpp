@@ -14,7 +14,8 @@
 namespace earthshine::base {
 namespace {
 
-// What to say of the file at a place that may name it already: "is a folder", "x.obj" is a folder.
+// Builds messages that name the file once: "is a folder", or "x.obj" is a folder if the place is in
+// another file.
 struct Named {
   const std::filesystem::path& path;
   const Location& asked_at;
@@ -29,7 +30,7 @@ struct Named {
 
 class Descriptor {
  public:
-  // Without O_NONBLOCK a pipe that nobody writes into would keep the opening waiting.
+  // Without O_NONBLOCK opening a pipe without a writer would block.
   explicit Descriptor(const Named& file)
       : number_(::open(file.path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)) {
     if (number_ < 0) {
@@ -48,7 +49,7 @@ class Descriptor {
   int number_;
 };
 
-// Bytes. A socket cannot be opened, which has said so by then.
+// Size in bytes. Sockets fail earlier, when they are opened.
 std::uint64_t size_on_disk(const Descriptor& file, const Named& named) {
   struct stat status {};
   if (::fstat(file.number(), &status) != 0) {
@@ -81,7 +82,7 @@ std::string read_input_file(const std::filesystem::path& path, std::size_t max_b
   const std::uint64_t size = size_on_disk(file, named);
   if (size > max_bytes) too_large();
   check_room(size, path.string());
-  // Files of /proc say that they are empty, and one may grow while it is read: read until it ends.
+  // Files in /proc report size 0, and a file may grow while it is read: read to the end.
   std::string bytes;
   constexpr std::size_t step = std::size_t{1} << 16;
   std::size_t filled = 0;

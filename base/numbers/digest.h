@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A 64-bit digest of a run of values: tells one content from another, not a forger from an author.
+// A 64-bit digest of a sequence of values. Not cryptographic.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ class Digest {
   void add(const glm::dvec3& value) {
     for (int c = 0; c < 3; ++c) add(value[c]);
   }
-  // The length goes first, so that "ab", "c" is not "a", "bc".
+  // The length is added first, so that "ab", "c" differs from "a", "bc".
   void add(std::string_view bytes) {
     add(std::uint64_t{bytes.size()});
     for (std::size_t at = 0; at < bytes.size(); at += sizeof(std::uint64_t)) {

@@ -9,7 +9,7 @@
 namespace earthshine::base {
 namespace {
 
-// Roots of the Legendre polynomial by Newton's method from Chebyshev's guesses.
+// Roots of the Legendre polynomial by Newton's method, from Chebyshev's approximation.
 GaussRule make_rule(int points) {
   GaussRule rule;
   for (int k = points; k > 0; --k) {

@@ -12,7 +12,7 @@ struct GaussRule {
   std::vector<double> node, weight;  // weights add up to 1
 };
 
-// The rule of 1 to most_gauss_points points; exact for polynomials of degree 2 points - 1.
+// The rule of 1 to most_gauss_points points, exact for polynomials of degree 2 points - 1.
 [[nodiscard]] const GaussRule& gauss_rule(int points);
 
 }  // namespace earthshine::base

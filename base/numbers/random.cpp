@@ -4,7 +4,7 @@
 namespace earthshine::base {
 namespace {
 
-// The matrices applied a byte of the index at a time: four look-ups instead of up to 32 steps.
+// Sobol matrices per byte of the index: four look-ups instead of up to 32 steps.
 constexpr std::array<std::array<std::array<std::uint32_t, 256>, 4>, 4> byte_tables() {
   std::array<std::array<std::array<std::uint32_t, 256>, 4>, 4> tables{};
   for (std::size_t d = 0; d < 4; ++d) {

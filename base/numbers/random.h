@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keyed random numbers: every number is a pure function of (seed, stream, item, index, dimension),
-// never of thread, tile or call order, so results do not depend on how the work was split.
+// Keyed random numbers. Each is a pure function of (seed, stream, item, index, dimension) and not
+// of thread, tile or call order, so that results do not depend on the division of work.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace earthshine::base {
 
-// What is being sampled. Two uses never share a stream.
+// Purpose of the samples. Two uses never share a stream.
 enum class Stream : std::uint32_t {
   FormFactor = 1,
   DirectLight,
@@ -33,7 +33,7 @@ enum class Stream : std::uint32_t {
   ShutInLight
 };
 
-// A 64-bit mix of the key's parts (SplitMix64 finaliser, Steele et al. 2014).
+// 64-bit mixing function (finaliser of SplitMix64, Steele et al. 2014).
 [[nodiscard]] constexpr std::uint64_t mix64(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15ULL;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -69,8 +69,8 @@ class Rng {
 };
 
 // Owen-scrambled Sobol points in four dimensions, scrambled and shuffled per key (Burley 2020,
-// "Practical Hash-based Owen Scrambling", JCGT 9(4); direction numbers of Joe and Kuo 2008).
-// Any power-of-two prefix is a (t, m, s)-net. Values lie in (0, 1).
+// "Practical Hash-based Owen Scrambling", JCGT 9(4); direction numbers of Joe and Kuo 2008). The
+// first 2^k points are a (t, m, s)-net for any k. Values are in (0, 1).
 class SobolOwen4 {
  public:
   explicit SobolOwen4(Key key);
@@ -83,8 +83,7 @@ class SobolOwen4 {
   std::array<std::uint32_t, 4> scramble_seed_;
 };
 
-// Bits shared by the two forms of the Owen-scrambled Sobol points (Burley 2020, "Practical
-// Hash-based Owen Scrambling", JCGT 9(4); direction numbers of Joe and Kuo 2008).
+// Bit operations shared by SobolOwen4 and SobolSet4 (Burley 2020; Joe and Kuo 2008).
 
 constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   x = ((x >> 1) & 0x55555555U) | ((x & 0x55555555U) << 1);
@@ -93,8 +92,8 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   return (x >> 24) | ((x >> 8) & 0xff00U) | ((x << 8) & 0xff0000U) | (x << 24);
 }
 
-// Laine-Karras permutation with Vegdahl's constants: each output bit depends on lower bits only,
-// which on the reversed number is Owen scrambling.
+// Laine-Karras permutation with Vegdahl's constants: each output bit depends on lower bits only. On
+// the bit-reversed number this is Owen scrambling.
 constexpr std::uint32_t laine_karras(std::uint32_t x, std::uint32_t seed) {
   x ^= x * 0x3d20adeaU;
   x += seed;
@@ -104,15 +103,15 @@ constexpr std::uint32_t laine_karras(std::uint32_t x, std::uint32_t seed) {
   return x;
 }
 
-// 23 bits and half a step keep the value strictly inside (0, 1) in single precision.
+// 23 bits plus half a step keep the value inside (0, 1) in single precision.
 constexpr float to_open_unit(std::uint32_t bits) {
   return (static_cast<float>(static_cast<std::int32_t>(bits >> 9)) + 0.5F) * 0x1p-23F;
 }
 
 using SobolMatrix = std::array<std::uint32_t, 32>;
 
-// Direction numbers from a primitive polynomial of degree s with coefficients a and first numbers m
-// (Joe and Kuo 2008, table new-joe-kuo-6, dimensions 1 to 4).
+// Direction numbers from a primitive polynomial of degree s with coefficients a and initial numbers
+// m (Joe and Kuo 2008, table new-joe-kuo-6, dimensions 1 to 4).
 constexpr SobolMatrix sobol_direction_numbers(std::uint32_t s, std::uint32_t a,
                                               std::array<std::uint32_t, 3> m) {
   SobolMatrix v{};

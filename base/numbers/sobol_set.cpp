@@ -15,7 +15,7 @@ std::uint32_t sobol(std::size_t dimension, std::uint32_t index) {
   return x;
 }
 
-// The upper halves of both numbers, bit by bit in turn.
+// Interleaves the upper halves of both numbers bit by bit (Morton code).
 std::uint32_t interleave(std::uint32_t x, std::uint32_t y) {
   std::uint32_t z = 0;
   for (int bit = 31; bit >= 16; --bit) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <csetjmp>
 #include <cstdio>
-// jpeglib.h needs the two above.
+// jpeglib.h needs the two headers above.
 #include <jpeglib.h>
 
 #include <string>
@@ -12,8 +12,8 @@
 namespace earthshine::base {
 namespace {
 
-// libjpeg reports failure by a call that must not return: a long jump, which must not cross an
-// object with a destructor. All of that kind lives in read_jpeg_pixels; the steps hold none.
+// libjpeg reports errors by a function that must not return, hence by longjmp, which must not skip
+// a destructor. read_jpeg_pixels owns all objects with destructors; the steps have none.
 struct JpegErrors {
   jpeg_error_mgr manager{};
   std::jmp_buf back{};
@@ -79,7 +79,7 @@ Pixels read_jpeg_pixels(std::string_view bytes, std::string_view named) {
       static_cast<int>(reader.jpeg.output_width), static_cast<int>(reader.jpeg.output_height), {}};
   pixels.rgba.resize(std::size_t{4} * reader.jpeg.output_width * reader.jpeg.output_height);
   if (!read(reader, pixels.rgba.data())) refuse(reader.errors.message);
-  // A file cut short is filled up with grey, with no more than a warning.
+  // libjpeg fills a truncated file with grey and only warns.
   if (reader.errors.manager.num_warnings > 0) refuse("it is cut short or damaged");
   return pixels;
 }

@@ -9,7 +9,7 @@
 namespace earthshine::base {
 namespace {
 
-// Of a picture, and of the texture that is made of it with its smaller copies.
+// Bytes of the picture, and of the texture made from it with its mipmaps.
 constexpr std::uint64_t bytes_per_pixel = 4 + 8 * 4 / 3;
 
 }  // namespace

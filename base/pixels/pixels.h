@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures in memory to pixels: PNG (libpng) and JPEG (libjpeg-turbo).
+// Decodes pictures in memory: PNG (libpng) and JPEG (libjpeg-turbo).
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace earthshine::base {
 
-// As the file has them, 8 bits a channel; 16 bits are rounded.
+// Stored values, 8 bits per channel; 16 bits are rounded.
 struct Pixels {
   int width = 0;
   int height = 0;
@@ -17,14 +17,14 @@ struct Pixels {
 
 inline constexpr int largest_picture_edge_px = 16384;
 
-// By the signature of the bytes, whatever the name says. Throws base::Error (Input) at `named` for
-// another format, a broken file, one cut short, and more than 16384 pixels an edge.
+// Selects the decoder by the signature, not by the file name. Throws base::Error (Input) at `named`
+// for another format, a broken or truncated file, or more than 16384 pixels on an edge.
 [[nodiscard]] Pixels read_pixels(std::string_view bytes, std::string_view named);
 
 [[nodiscard]] Pixels read_png_pixels(std::string_view bytes, std::string_view named);
 [[nodiscard]] Pixels read_jpeg_pixels(std::string_view bytes, std::string_view named);
 
-// Throws unless both edges are allowed, the picture has pixels, and there is room for them.
+// Throws if the picture is empty, an edge is too large or memory is short.
 void check_size(std::uint64_t width, std::uint64_t height, std::string_view named);
 
 }  // namespace earthshine::base

@@ -9,7 +9,7 @@
 namespace earthshine::base {
 namespace {
 
-// libpng's own clean-up, whatever happens.
+// RAII: frees libpng's data.
 struct PngImage {
   png_image image{};
   PngImage() { image.version = PNG_IMAGE_VERSION; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ranks of Open MPI. The only user of the library.
+// Ranks of Open MPI. Only this file uses the library.
 #include <mpi.h>
 
 #include <algorithm>
@@ -15,12 +15,12 @@
 namespace earthshine::base {
 namespace {
 
-// Which components of Open MPI may take from a counter that is elsewhere. Debian's settings leave
-// out pt2pt, the only one over TCP, and ucx, which wants networks of its own; pt2pt may be, and
-// whoever says something else in the environment or to mpirun has it.
+// Components of Open MPI for one-sided communication (the counters on rank 0). Debian's settings
+// exclude pt2pt, the only one over TCP, and ucx, which needs special networks. The default here
+// allows pt2pt; the environment or an option of mpirun overrides it.
 constexpr const char* components = "OMPI_MCA_osc";
 
-// Counts of MPI are ints.
+// Counts in MPI are ints, so that messages are divided.
 constexpr std::uint64_t most_at_once = 1U << 30U;
 
 class OpenMpi : public Ranks {
@@ -119,8 +119,8 @@ class OpenMpi : public Ranks {
 
   [[nodiscard]] std::size_t take() override { return add_to_counter(1, MPI_SUM); }
 
-  // Two counters in turn: this one is set back while the ranks may be taking from the other, and
-  // before they come back to it they have heard the first rank again.
+  // Two counters alternate. Rank 0 resets this one while other ranks may already use the other
+  // counter. A collective call with rank 0 lies between this reset and the next use.
   void end_of_taking() override {
     if (number_ == 0) (void)add_to_counter(0, MPI_REPLACE);
     counter_ = 1 - counter_;
@@ -132,14 +132,14 @@ class OpenMpi : public Ranks {
   }
 
  private:
-  // On its way, and needed until it has arrived.
+  // A message on its way; MPI needs the buffers until it has arrived.
   struct Sent {
     std::uint64_t size = 0;
     std::string bytes;
     std::vector<MPI_Request> requests;
   };
 
-  // Of items among the ranks, as MPI takes it.
+  // Division of items among ranks, in the form that MPI expects.
   struct Division {
     Division(std::size_t bytes_each, const std::vector<std::size_t>& start) {
       MPI_Type_contiguous(static_cast<int>(bytes_each), MPI_BYTE, &item);
@@ -165,7 +165,7 @@ class OpenMpi : public Ranks {
     }
   }
 
-  // The first speaks for all, and the others wait to be ended with it.
+  // Rank 0 reports the error; the others wait until it ends them.
   [[noreturn]] void refuse_window() const {
     if (number_ > 0) MPI_Barrier(MPI_COMM_WORLD);
     const char* const allowed = std::getenv(components);
@@ -174,7 +174,7 @@ class OpenMpi : public Ranks {
                 "Add --mca osc ^ucx to mpirun, or ucx where pml is ucx, too");
   }
 
-  // What it held before. One thread at a time speaks.
+  // Returns the value before the addition. One thread at a time may call MPI.
   std::uint64_t add_to_counter(std::uint64_t number, MPI_Op how) {
     const std::lock_guard alone(speaking_);
     std::uint64_t before = 0;
@@ -184,8 +184,8 @@ class OpenMpi : public Ranks {
   }
 
   int number_ = 0, count_ = 1, count_here_ = 1, lowest_here_ = 0;
-  MPI_Win window_ = MPI_WIN_NULL;  // two counters, at the first rank
-  MPI_Aint counter_ = 0;           // which of them counts now
+  MPI_Win window_ = MPI_WIN_NULL;  // two counters, on rank 0
+  MPI_Aint counter_ = 0;           // index of the counter in use
   std::mutex speaking_;
   std::list<Sent> sent_;
 };

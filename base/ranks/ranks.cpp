@@ -21,7 +21,7 @@ void work_alone(std::size_t count, const Work& work) {
   });
 }
 
-// Every rank, or the first, hears what the others have worked out.
+// All ranks, or rank 0, receive the results of the others.
 void exchange(Ranks& all, std::vector<std::size_t>& mine, const Transfer& transfer, Hears hears) {
   const auto say = [&] {
     Parcel sent;
@@ -65,7 +65,8 @@ void hear_all(Ranks& ranks, const std::function<std::string()>& say,
 
 std::vector<std::string> swap(Ranks& ranks, std::vector<std::string> to) {
   std::vector<std::string> got(to.size());
-  for (int step = 0; step < ranks.count(); ++step) {  // not all to the same rank at once
+  for (int step = 0; step < ranks.count(); ++step) {  // staggered, so that ranks do not all send to
+                                                      // the same one
     const int other = (ranks.number() + step) % ranks.count();
     std::string& bytes = to[static_cast<std::size_t>(other)];
     if (step == 0) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ranks: processes on one machine or many that run the same call side by side and share out its
-// heavy loops. Without any (the plain program) such a loop is a parallel one of this process.
+// Ranks: processes on one or more machines that run the same call and share its long loops. Without
+// ranks such a loop is a parallel loop of this process.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace earthshine::base {
 
-// What connects them. All ranks make the same calls in the same order.
+// Interface to the message passing library. All ranks make the same calls in the same order.
 class Ranks {
  public:
   Ranks() = default;
@@ -24,37 +24,40 @@ class Ranks {
 
   [[nodiscard]] virtual int number() const = 0;  // of this process, from 0
   [[nodiscard]] virtual int count() const = 0;
-  // Of them those on this machine, this one included: they share its memory.
+  // Ranks on this machine, including this one; they share its memory.
   [[nodiscard]] virtual int count_here() const = 0;
-  [[nodiscard]] virtual bool first_is_here() const = 0;  // rank 0 is one of them
-  // `bytes` bytes of rank `from`, on every rank.
+  [[nodiscard]] virtual bool first_is_here() const = 0;  // rank 0 is on this machine
+  // Copies `bytes` bytes from rank `from` to all ranks.
   virtual void broadcast(void* first, std::size_t bytes, int from) = 0;
-  // To one rank, without waiting for it; any thread may send. What one rank sends to another comes
-  // there in that order.
+  // Sends to one rank without waiting. Any thread may send. Messages from one rank to another
+  // arrive in order.
   virtual void send(std::string bytes, int to) = 0;
   [[nodiscard]] virtual std::string receive(int from) = 0;
-  // Of items of `bytes_each`, rank r has [start[r], start[r + 1]): afterwards every rank has all.
+  // All-gather. Before, rank r has the items [start[r], start[r + 1]), each of `bytes_each` bytes;
+  // afterwards every rank has all items.
   virtual void gather(void* items, std::size_t bytes_each,
                       const std::vector<std::size_t>& start) = 0;
-  // The same, but the first rank alone has all afterwards; elsewhere `items` are the own.
+  // Gather: only rank 0 gets all items. On other ranks `items` points to their own ones.
   virtual void gather_at_first(void* items, std::size_t bytes_each,
                                const std::vector<std::size_t>& start) = 0;
-  // The other way round: the first rank has all, afterwards `items` are the own everywhere.
+  // Scatter: rank 0 has all items. Afterwards every rank has its own ones, at the start of `items`
+  // on the others.
   virtual void scatter_from_first(void* items, std::size_t bytes_each,
                                   const std::vector<std::size_t>& start) = 0;
-  // Of a loop's items, by number from 0, one that no rank has taken yet; from any thread. After the
-  // last of them numbers go on.
+  // Number of a loop item that no rank has taken yet, from 0; any thread may call it. After the
+  // last item the numbers continue.
   [[nodiscard]] virtual std::size_t take() = 0;
-  // Between two loops that take(): every rank has taken, and heard all ranks since.
+  // Separates two loops that call take(). Each rank calls it after its last take() and after it has
+  // received data from all ranks.
   virtual void end_of_taking() = 0;
-  // Ends all of them at once with this exit code.
+  // Ends all ranks with this exit code.
   [[noreturn]] virtual void end_all(int exit_code) = 0;
 };
 
-// Those in force; nullptr: this process is alone.
+// The installed ranks; nullptr: this process is the only one.
 [[nodiscard]] Ranks* ranks();
 
-// Puts them in force for as long as it lives.
+// RAII: installs `ranks` for the current scope.
 class RanksInForce {
  public:
   explicit RanksInForce(Ranks* ranks);
@@ -66,11 +69,11 @@ class RanksInForce {
   Ranks* before_;
 };
 
-// Values on their way between ranks of the same program: pass() appends them to the bytes, or takes
-// them from there, in the same order.
+// Serialised values between ranks of one program. pass() appends values to the bytes or extracts
+// them, in the same order.
 class Parcel {
  public:
-  Parcel() = default;  // to be filled
+  Parcel() = default;  // for writing
   explicit Parcel(std::string bytes) : bytes_(std::move(bytes)), fills_(false) {}
 
   template <class Value>
@@ -78,13 +81,13 @@ class Parcel {
     static_assert(std::is_trivially_copyable_v<Value>);
     pass_bytes(&value, sizeof value);
   }
-  // As many as there are, on both sides.
+  // Both sides must give the same count.
   template <class Value>
   void pass_range(Value* first, std::size_t count) {
     static_assert(std::is_trivially_copyable_v<Value>);
     pass_bytes(first, count * sizeof(Value));
   }
-  // The size travels too.
+  // Also passes the size.
   template <class Value>
   void pass(std::vector<Value>& values) {
     static_assert(std::is_trivially_copyable_v<Value>);
@@ -124,36 +127,36 @@ class Parcel {
   bool fills_ = true;
 };
 
-// Each rank in turn says something, and all of them, itself too, hear it: none needs room for more
-// than one rank's.
+// All-gather of byte strings: each rank in turn broadcasts say(), and all ranks, including the
+// sender, call hear(). A rank needs memory for one message only.
 void hear_all(Ranks& ranks, const std::function<std::string()>& say,
               const std::function<void(int rank, std::string bytes)>& hear);
 
-// to[r] goes to rank r; returned is what each rank gave for this one.
+// All-to-all: to[r] goes to rank r. Returns the strings from all ranks for this one.
 [[nodiscard]] std::vector<std::string> swap(Ranks& ranks, std::vector<std::string> to);
 
-// Returns once every rank has called it.
+// Barrier.
 void meet(Ranks& ranks);
 
-// Which rank has all that a shared loop has changed. The others have what they did themselves.
+// Ranks that receive all results of a shared loop. The others have their own results only.
 enum class Hears { All, First };
 
-// work(k) for every k in [0, count), in parallel, each by the rank that comes to it first: for
-// items of a millisecond or more. transfer(k) must pass all that work(k) changes, so that
-// afterwards every rank has all of it, or the first. A single item is worked out by every rank,
-// without a word: what is called from within a parallel loop must be so.
+// Calls work(k) for every k in [0, count) in parallel. Ranks take items dynamically; suited to
+// items of a millisecond or more. transfer(k) must pass all results of work(k): afterwards all
+// ranks, or rank 0, have them. With a single item every rank computes it without communication.
+// Calls within a parallel loop must have one item.
 void share_loop(std::size_t count, const std::function<void(std::size_t k)>& work,
                 const std::function<void(std::size_t k, Parcel& parcel)>& transfer,
                 Hears hears = Hears::All);
 
-// The same of body(begin, end) over [0, count) in chunks, dealt out in turn: for cheap ones.
+// The same for body(begin, end) over chunks of [0, count), assigned cyclically. For cheap items.
 void share_chunks(
     std::size_t count, std::size_t chunk,
     const std::function<void(std::size_t begin, std::size_t end)>& body,
     const std::function<void(std::size_t begin, std::size_t end, Parcel& parcel)>& transfer,
     Hears hears = Hears::All);
 
-// Whether it holds on every rank.
+// Logical AND over all ranks.
 [[nodiscard]] bool holds_on_all_ranks(bool here);
 
 }  // namespace earthshine::base

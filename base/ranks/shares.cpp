@@ -20,7 +20,7 @@ Shares::Shares(std::span<const double> cost, std::size_t grain) {
   for (std::size_t i = 0; i < cost.size() && rank < count; i += grain) {
     const std::span<const double> grains = cost.subspan(i, std::min(grain, cost.size() - i));
     const double held = std::accumulate(grains.begin(), grains.end(), 0.0);
-    // Whichever end of the grain is nearer to where the range should end.
+    // Chooses the end of the grain that is nearer to the wanted end of the range.
     const double middle = before + 0.5 * held;
     for (; rank < count && middle * double(count) >= all * double(rank); ++rank) start_[rank] = i;
     before += held;

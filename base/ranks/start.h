@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two libraries define it: one for the plain program (alone.cpp), one with Open MPI (open_mpi.cpp).
+// Two libraries define this function: alone.cpp for the plain program, open_mpi.cpp for Open MPI.
 #pragma once
 
 #include <memory>
@@ -8,9 +8,10 @@
 
 namespace earthshine::base {
 
-// The ranks that mpirun or srun started this process as one of; null where it is alone. Once in a
-// process, before anything else; what it gives must live to its end. Throws base::Error (Input) for
-// one of several processes of srun that do not know of each other: each would do all of the work.
+// Starts message passing if mpirun or srun started several processes; null if this process is the
+// only one. Call it once, before anything else; the result must live until the process ends. Throws
+// base::Error (Input) if srun started several processes that are not connected: each would do all
+// work.
 [[nodiscard]] std::unique_ptr<Ranks> start_ranks(int& argc, char**& argv);
 
 }  // namespace earthshine::base

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Means with standard errors from pictures whose resels are not independent: the picture is cut
-// into blocks larger than its grain, and the scatter of the blocks gives the error.
+// Means with standard errors for pictures with correlated resels. The picture is divided into
+// blocks larger than its grain; the scatter of the blocks gives the error.
 #pragma once
 
 #include <limits>
@@ -16,8 +16,8 @@ struct Estimate {
   double freedom = std::numeric_limits<double>::infinity();  // degrees of freedom of the error
 };
 
-// Four standard errors; more where the error is itself known from few blocks, so that the chance of
-// a miss stays that of a normal number (Student's t, Cornish and Fisher's expansion).
+// Four standard errors. With few degrees of freedom, Student's t of the same probability
+// (Cornish-Fisher expansion).
 [[nodiscard]] double four_errors(const Estimate& estimate);
 
 // [x0, x1) x [y0, y1)
@@ -25,7 +25,8 @@ struct Block {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
-// Whole blocks of edge x edge inside a border of `margin`, where filters see mirrored resels.
+// Complete blocks of edge x edge inside a border of `margin`, where filters include mirrored
+// resels.
 [[nodiscard]] std::vector<Block> cut_blocks(int columns, int rows, int margin, int edge);
 
 // Mean of f(index of the resel) over a block.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A camera's certificate: the whole chain is measured from outside, as a camera is measured on a
-// bench, and each number stands beside what the camera's own settings demand in closed form.
+// A camera's certificate: the whole chain is measured like a camera on a test bench. Each result is
+// compared with its closed form from the camera's settings.
 #pragma once
 
 #include <cstdint>
@@ -23,18 +23,18 @@ struct CertificateRow {
   double measured = 0.0, expected = 0.0;
   double tolerance = 0.0;    // on |measured - expected|
   bool statistical = false;  // the tolerance is four standard errors
-  std::string law;           // where `expected` comes from
+  std::string law;           // source of `expected`
   Verdict verdict = Verdict::DoesNotApply;
-  std::string why;  // it does not apply
+  std::string why;  // reason if it does not apply
 };
 
-// Tables for a datasheet's graphs. Signals are linear, 1 at white, before gamma.
+// Data for the graphs of a datasheet. Signals are linear, before gamma, 1 at white.
 struct TransferPoint {
   double signal = 0.0, mean = 0.0, in_time = 0.0, in_space = 0.0;  // variances
   double law_in_time = 0.0, law_in_space = 0.0;
 };
 struct SharpnessPoint {
-  double frequency = 0.0;  // cycles per resel, along the normal of an edge 5 degrees off
+  double frequency = 0.0;  // cycles per resel, along the normal of an edge tilted by 5 degrees
   double along = 0.0, across = 0.0, law_along = 0.0, law_across = 0.0;
 };
 
@@ -45,7 +45,7 @@ struct Certificate {
 
   [[nodiscard]] int count(Verdict verdict) const;
   [[nodiscard]] bool passed() const { return count(Verdict::Fail) == 0; }
-  // "photon transfer: noise of the light b; ..." of the rows that fail.
+  // The rows that fail: "photon transfer: noise of the light b; ...".
   [[nodiscard]] std::string failures() const;
 };
 
@@ -58,13 +58,13 @@ using Chain =
 
 struct CertifyOptions {
   std::uint64_t seed = 1;
-  Chain chain = still_chain;  // what is measured
+  Chain chain = still_chain;  // the chain under test
 };
 
-// Smallest monitor that can be measured, in resels each way.
+// Smallest monitor for a certificate, resels in each direction.
 inline constexpr int least_certified_resels = 64;
 
-// Throws base::Error (Input) if the monitor has fewer resels than that.
+// Throws base::Error (Input) if the monitor has fewer resels.
 [[nodiscard]] Certificate certify(const CctvCamera& camera, const Monitor& monitor,
                                   const CertifyOptions& options = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the sensor's signal to the line: limits, gain, black, gamma, steps.
+// From the sensor's signal to the line: limits, gain, black, gamma, quantisation.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace earthshine::degrade {
 namespace {
 
-// The largest signal of a flat field far above `limit`, only `kept` of the limits at work.
+// Largest signal of a flat field far above `limit`, with `kept` as the only active limit.
 double overloaded(const Bench& bench, double limit, const std::string& kept) {
   Names off = stage::noise + stage::uneven + stage::limits + stage::coding + stage::screen;
   std::erase(off, kept);
@@ -38,7 +38,7 @@ Rows limit_rows(const Bench& bench) {
   return rows;
 }
 
-// Gain acts on signal and noise alike, so the noise of one seed must grow resel by resel.
+// Gain multiplies signal and noise, so that the noise of one seed must scale in every resel.
 CertificateRow gain(const Bench& bench, const base::Image& ramp, const Plane& linear) {
   CctvCamera louder = bench.held();
   louder.gain_db = 20.0 * std::log10(2.0);
@@ -96,8 +96,9 @@ CertificateRow black(const Bench& bench) {
                        "clipped normal: sigma / sqrt(2 pi)", 1e-9);
 }
 
-// Noise off, a ramp over every step: the rest x = quantised - analogue is uniform, mean 0 and
-// variance q^2 / 12 (not q^2 / 6 as after dither), and at most q / 2. Var of x^2 is q^4 / 180.
+// Noise off, a ramp over all steps: the error x = quantised - analogue is uniform, with mean 0,
+// variance q^2 / 12 (with dither it would be q^2 / 6) and |x| <= q / 2. The variance of x^2 is
+// q^4 / 180.
 Rows step_rows(const Bench& bench) {
   constexpr std::string_view step = "step: variance over q^2", bias = "step: mean over q";
   const CctvCamera& camera = bench.camera();
@@ -121,7 +122,7 @@ Rows step_rows(const Bench& bench) {
     sum += rest / count;
     squares += rest * rest / count;
   }
-  // Single precision of v, in steps.
+  // Rounding of v in single precision, in steps.
   const double grain = levels * 6e-8;
   return {within_errors(step, "1", {squares, 1.0 / std::sqrt(180.0 * count)}, 1.0 / 12.0,
                         "uniform rest: 1/12", grain),

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The iris: what it brings the light to, how far it reaches, what happens beyond. Noise, spread and
-// limits left out.
+// The iris: its target, its range and its state beyond the range. Without noise, spread and limits.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +9,8 @@
 namespace earthshine::degrade {
 namespace {
 
-constexpr double bright_share = 0.1, dim = 0.1;  // the scene: a tenth of it ten times as bright
+constexpr double bright_share = 0.1, dim = 0.1;  // a tenth of the scene is ten times as bright as
+                                                 // the rest
 
 // The meters of docs/cctv.md, in double precision.
 double meter(const CctvCamera& camera, IrisMode mode, const Picture& picture) {
@@ -36,7 +36,7 @@ double meter(const CctvCamera& camera, IrisMode mode, const Picture& picture) {
   return std::pow(sum / weights, 1.0 / power);
 }
 
-// Luminances at which something changes, from the settings.
+// Luminances at which iris or gain reach a limit, from the settings.
 struct Reach {
   double target = 1.0;
   double most_gain = 1.0;
@@ -63,7 +63,7 @@ class Scene {
         options_(bench.options(stage::noise + stage::uneven + stage::spatial + stage::limits +
                                stage::coding + stage::screen)) {}
 
-  // A narrow strip, so that many are quick.
+  // A narrow strip, for speed.
   [[nodiscard]] Result flat(double luminance) const {
     base::Image image{std::min(8, bench_.columns()), bench_.rows(), {}};
     image.add("Y").assign(image.pixel_count(), static_cast<float>(luminance));
@@ -88,7 +88,7 @@ double first_value(const Result& result) {
   return static_cast<double>(result.signal.channels[0].values[0]);
 }
 
-// Luminance where a flag changes between two others, by halving in the logarithm.
+// Luminance at which a flag changes, by bisection in the logarithm.
 template <class Flag>
 double luminance_at(double from, double to, Flag flag) {
   double a = std::log(from), b = std::log(to);
@@ -161,7 +161,7 @@ CertificateRow gain(const Bench& bench, const Scene& scene, const Reach& reach) 
                 "wide open, half of the gain in dB: still t");
 }
 
-// Same target, no weight on the centre: the more a meter heeds bright points, the more it closes.
+// Same target, no centre weight: a meter with more weight on bright points closes the iris further.
 Rows mode_rows(const Bench& bench, const Scene& scene, const Reach& reach) {
   CctvCamera camera = bench.camera();
   camera.iris_target = reach.target;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the lens and the sensor do to the picture besides blur and noise.
+// Effects of lens and sensor other than blur and noise.
 #include <cmath>
 
 #include "base/units.h"
@@ -25,7 +25,7 @@ CertificateRow aperture(const Bench& bench) {
                 "E proportional to 1 / N^2");
 }
 
-// A bright left half: the far dark side sees the veil alone.
+// A bright left half: the far dark side shows only the veil.
 void glare(const Bench& bench, Rows& rows) {
   const double share = bench.camera().glare;
   const int half = bench.columns() / 2;
@@ -42,7 +42,7 @@ void glare(const Bench& bench, Rows& rows) {
                         chain_rounding, "g mean(S)"));
 }
 
-// A chart through one uneven stage, beside the same without it.
+// Signal of a chart through one non-uniform stage only.
 Picture through(const Bench& bench, const base::Image& chart, const std::string& kept) {
   Names off =
       stage::noise + stage::uneven + stage::spatial + stage::limits + stage::coding + stage::screen;
@@ -81,8 +81,8 @@ CertificateRow shading(const Bench& bench) {
                 chain_rounding, "1 - d r^2, r = 1 in the corners");
 }
 
-// A patch over a tenth of the lines: in its columns the black is left with the patch's signal times
-// 10^(-dB / 20), the definition of a chip's smear.
+// A patch over a tenth of the lines: in its columns, black gets the patch's signal times
+// 10^(-dB / 20), the definition of smear of a chip.
 CertificateRow smear(const Bench& bench) {
   constexpr std::string_view name = "smear under a patch of a tenth of the height";
   const double db = bench.camera().smear_db;
@@ -97,7 +97,7 @@ CertificateRow smear(const Bench& bench) {
                 1e-3, "S + 10 smear mean(column)");
 }
 
-// A square far above saturation: the share `bloom` of the excess comes back as a Gaussian halo.
+// A square far above saturation: the share `bloom` of the excess returns as a Gaussian halo.
 CertificateRow bloom(const Bench& bench) {
   constexpr std::string_view name = "bloom: halo beside an overloaded square";
   const CctvCamera& camera = bench.camera();
@@ -112,12 +112,12 @@ CertificateRow bloom(const Bench& bench) {
     return inside ? overload * camera.saturation : 0.0;
   }),
                                  "bloom");
-  // The discrete Gaussian's taps over the square, along and across; mirrors at the border add what
-  // would have left.
+  // Sum of the discrete Gaussian's taps over the square, along and across. Mirroring at the border
+  // returns the light beyond it.
   const auto over_square = [&](int from, int centre, int size) {
     double sum = 0.0;
     for (int n = centre - side / 2; n <= centre + side / 2; ++n) {
-      // Mirrors in both borders, and in each other, as far as a tap reaches.
+      // Repeated mirror images in both borders, as far as a tap reaches.
       const int turns = 1 + static_cast<int>(7.0 * camera.bloom_radius) / size;
       for (int turn = -turns; turn <= turns; ++turn) {
         const int there = 2 * turn * size;

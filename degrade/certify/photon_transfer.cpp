@@ -11,10 +11,10 @@
 namespace earthshine::degrade {
 namespace {
 
-// Powers of the signal with a coefficient each.
+// Powers of the signal, each with a coefficient.
 using Powers = std::vector<int>;
 
-// The coefficients by weighted least squares: (X' W X)^-1 X' W v for each block's variances v.
+// Weighted least squares: coefficients (X' W X)^-1 X' W v for the variances v of each block.
 std::vector<Estimate> fit(std::span<const FlatField> fields,
                           const std::vector<double> FlatField::*variances,
                           const std::vector<double>& weights, const Powers& powers) {
@@ -43,7 +43,7 @@ std::vector<Estimate> fit(std::span<const FlatField> fields,
 // Photon transfer: flat fields from black to white at the linear signal, two frames of each.
 
 constexpr double levels[] = {0.0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 0.85, 1.0};
-// Single precision leaves this much in a mean and in a variance of signals near 1.
+// Rounding errors of single precision in a mean and in a variance, for signals near 1.
 constexpr double mean_rounding = 1e-6, variance_rounding = 1e-13;
 
 const FlatField& at(const std::vector<FlatField>& fields, double signal) {
@@ -73,8 +73,8 @@ CertificateRow coefficient(std::string_view name, const Estimate& on_line, doubl
                        variance_rounding / factor);
 }
 
-// A standard deviation in percent from a variance that may be measured below zero: the tolerance is
-// that of the variance, carried through the root.
+// A standard deviation in percent, from a variance that may be negative when measured. The
+// tolerance of the variance is propagated through the root.
 CertificateRow percent(std::string_view name, const Estimate& on_line, double factor,
                        double expected, std::string_view law) {
   const Estimate variance = scaled(on_line, 1.0 / factor);
@@ -87,7 +87,7 @@ CertificateRow percent(std::string_view name, const Estimate& on_line, double fa
   return row;
 }
 
-// The reciprocal of b, whose tolerance is that of b carried through.
+// The reciprocal of b, with the propagated tolerance of b.
 CertificateRow electrons(const Estimate& b, double law, double excess) {
   constexpr std::string_view name = "electrons at white";
   const double relative = four_errors(b) / law;
@@ -202,7 +202,7 @@ PhotonTransfer fit_photon_transfer(std::span<const FlatField> fields) {
   for (const FlatField& field : fields) {
     variances.push_back(mean_of(field.in_time).value + std::abs(mean_of(field.in_space).value));
   }
-  // A level without any noise would take all the weight.
+  // Otherwise a level without noise would get all the weight.
   const double least =
       std::max(1e-6 * *std::max_element(variances.begin(), variances.end()), 1e-20);
   std::vector<double> weights;
@@ -223,7 +223,7 @@ Rows photon_transfer_rows(const Bench& bench, std::vector<TransferPoint>& points
   std::uint64_t frame = 0;
   for (const double level : levels) {
     const base::Image chart = bench.flat(level);
-    // New frames for each level, else all levels would miss their laws in the same direction.
+    // New frames for each level; else the errors of all levels would be correlated.
     const Picture frames[] = {bench.linear(chart, frame), bench.linear(chart, frame + 1)};
     frame += 2;
     fields.push_back(measure_flat(level, frames, bench.blocks()));
@@ -233,7 +233,7 @@ Rows photon_transfer_rows(const Bench& bench, std::vector<TransferPoint>& points
   }
   const PhotonTransfer fit = fit_photon_transfer(fields);
   Rows rows = mean_rows(fields);
-  // Black's noise in time may come from two places with a filter each.
+  // The noise of black in time may have two sources with different filters.
   const double a = line.amplifier + line.dark;
   const double light = line.light_factor(), amplifier = line.amplifier_factor();
   rows.push_back(coefficient("a, noise of black", fit.a,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Photon transfer (EMVA 1288, release 4.0 linear, sections 6 and 8): variance against mean of flat
-// fields, the noise that changes from frame to frame told from the pattern that does not.
+// fields, with temporal noise separated from the fixed pattern.
 //   in time   mean over resels of the variance over L frames
-//   in space  variance over resels of the mean of L frames, less (in time) / L
+//   in space  variance over resels of the mean of L frames, minus (in time) / L
 #pragma once
 
 #include <array>
@@ -13,24 +13,23 @@
 
 namespace earthshine::degrade {
 
-// One flat field. The vectors have a number for each block of each plane, in the same order for all
-// levels.
+// One flat field. The vectors have one value per block and plane, in the same order for all levels.
 struct FlatField {
-  double signal = 0.0;  // the light that was given
+  double signal = 0.0;  // signal of the chart
   std::vector<double> mean, in_time, in_space;
 };
 // frames: at least two, of the same size.
 [[nodiscard]] FlatField measure_flat(double signal, std::span<const Picture> frames,
                                      const std::vector<Block>& blocks);
 
-// in time = a + b S + c S^2, in space = fixed_a + fixed_c S^2: least squares with weights 1 /
-// variance^2, because a sample variance scatters in proportion to the variance. Each block is
-// fitted by itself with the weights of all; the scatter of the fits gives the errors.
+// in time = a + b S + c S^2, in space = fixed_a + fixed_c S^2. Least squares with weights
+// 1 / variance^2, because the error of a sample variance is proportional to the variance. Each
+// block is fitted separately with the common weights; the scatter of the fits gives the errors.
 struct PhotonTransfer {
   Estimate a, b, c;
   Estimate fixed_a, fixed_c;
 };
-// At least three different signals.
+// Needs at least three different signals.
 [[nodiscard]] PhotonTransfer fit_photon_transfer(std::span<const FlatField> fields);
 
 }  // namespace earthshine::degrade

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The monitor: drive, room, phosphor. The camera passes on the line signal that each chart means.
+// The monitor: drive, room light, phosphor. Each chart defines the line signal.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,7 @@
 namespace earthshine::degrade {
 namespace {
 
-constexpr double screen_rounding = 2e-6;  // of the screen's white
+constexpr double screen_rounding = 2e-6;  // relative to the screen's white
 
 class Screen {
  public:
@@ -19,7 +19,7 @@ class Screen {
         options_(bench.options(stage::noise + stage::uneven + stage::spatial + stage::limits +
                                Names{"quantisation"})) {}
 
-  // f(x, y) in resels is the line signal wanted.
+  // f(x, y), with x and y in resels, is the line signal.
   template <class F>
   [[nodiscard]] Result show(F f) const {
     const double gamma = bench_.camera().gamma;
@@ -29,7 +29,7 @@ class Screen {
   [[nodiscard]] double veil() const {
     return bench_.monitor().reflectance * bench_.monitor().room_illuminance / base::pi;
   }
-  // Law of a flat field of line signal v, room included.
+  // Expected luminance of a flat field of line signal v, with room light.
   [[nodiscard]] double luminance(double v) const {
     const Monitor& m = bench_.monitor();
     return m.black_luminance + (m.white_luminance - m.black_luminance) * std::pow(v, m.gamma) +
@@ -89,7 +89,7 @@ Rows level_rows(const Screen& screen) {
 }
 
 CertificateRow checkerboard(const Bench& bench, const Screen& screen) {
-  // A sinc's negative light beside black would be cut, and light would be gained.
+  // A sinc makes negative light beside black. It would be clipped, which increases the mean.
   const double low =
       bench.monitor().spread == Spread::Sinc ? std::pow(0.7, 1.0 / bench.monitor().gamma) : 0.0;
   const auto is_bright = [](double x, double y) {
@@ -122,8 +122,8 @@ CertificateRow light_sum(const Bench& bench, const Screen& screen) {
                 law, 4.0 * screen.slack(), "the phosphor's spread keeps the sum of light");
 }
 
-// An edge on the border of two resels, black to white: I_b + (I_w - I_b) H(x) under the room, H the
-// integral of the point spread; light below zero is cut.
+// An edge from black to white between two resels: I_b + (I_w - I_b) H(x) plus room light, H the
+// integral of the point spread. Negative light is clipped.
 CertificateRow phosphor(const Bench& bench, const Screen& screen, Axis axis) {
   const bool along = axis == Axis::Along;
   const int at = (along ? bench.columns() : bench.rows()) / 2;

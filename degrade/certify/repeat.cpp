@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Repeatability, and the noise as a field: what must be the same, what must be new, how neighbours
-// hang together.
+// Repeatability: equal bytes for equal seeds, new noise in new frames. The noise as a random field:
+// correlation of neighbours, stationarity, third moment.
 #include <algorithm>
 #include <cmath>
 
@@ -101,9 +101,9 @@ Rows grain_rows(const Bench& bench, const Picture& field) {
 }
 
 // Sixteen tiles. The sample variance of m normal values of correlation rho has the relative
-// variance (2 / m) sum over shifts of rho^2 (1 - |dx| / width) (1 - |dy| / height), and the excess
+// variance (2 / m) sum over shifts of rho^2 (1 - |dx| / width) (1 - |dy| / height), plus the excess
 // kurtosis of counts over m. The sum of squared standardised deviations from the law is chi-squared
-// with 16 degrees of freedom; Wilson and Hilferty's cube root makes it a standard normal z.
+// with 16 degrees of freedom. Wilson and Hilferty's cube root converts it to a standard normal z.
 CertificateRow stationarity(const Bench& bench, const Picture& field) {
   constexpr std::string_view name = "z of sixteen tiles' variances";
   const int width = (bench.columns() - 2 * bench.margin()) / 4;
@@ -154,7 +154,7 @@ CertificateRow skewness(const Bench& bench, const Picture& field) {
     for (const Block& block : bench.blocks()) {
       blocks.push_back(block_mean(block, field.columns, [&](std::size_t i) {
         const double d = (static_cast<double>(plane[i]) - centre) / std::sqrt(variance);
-        // Hermite's polynomial: the mean's own error drops out.
+        // Third Hermite polynomial: insensitive to the error of the mean.
         return d * d * d - 3.0 * d;
       }));
     }

@@ -24,7 +24,7 @@ std::size_t index(int x, int y, int columns) {
          static_cast<std::size_t>(x);
 }
 
-// Centroid of the derivative of each line within `window` of the guess, then least squares.
+// Centroids of the derivative of each line within `window` of the guess, then a least-squares line.
 Line fit_line(const Plane& plane, int columns, int rows, const Line& guess, double window) {
   const double middle = 0.5 * (rows - 1);
   double n = 0.0, sx = 0.0, sy = 0.0, sxy = 0.0, syy = 0.0;
@@ -51,20 +51,20 @@ Line fit_line(const Plane& plane, int columns, int rows, const Line& guess, doub
   const double spread = n * syy - sy * sy;
   if (!(spread > 0.0)) return guess;
   const double slope = (n * sxy - sx * sy) / spread;
-  // Where noise buries the edge the line could lie anywhere; it is kept in the picture.
+  // Under strong noise the fit is arbitrary; this keeps it inside the picture.
   const double steepest = std::tan(base::radians(most_degrees));
   return {std::clamp((sx - slope * sy) / n, 0.0, columns - 1.0),
           std::clamp(slope, -steepest, steepest)};
 }
 
-// Slanted edge, 5 degrees off the lines and off the columns, from black's neighbourhood to white's.
+// Slanted edge, 5 degrees off the lines or the columns, from near black to near white.
 
 constexpr double tilt = 5.0 * base::pi / 180.0;
 constexpr double low = 0.2, high = 0.8;
 constexpr int profile_bins = 16;
 constexpr double nyquist = 0.5;
-constexpr double limit_of_sight = 0.05;  // modulation at which lines are no longer told apart
-constexpr int chart_fineness = 2;        // so that the area average onto the grid is measured too
+constexpr double limit_of_sight = 0.05;  // modulation below which lines are not resolved
+constexpr int chart_fineness = 2;        // also tests the area average onto the grid
 
 base::Image edge_chart(const Bench& bench, Axis axis) {
   const double middle_x = 0.5 * bench.columns(), middle_y = 0.5 * bench.rows();
@@ -78,7 +78,7 @@ base::Image edge_chart(const Bench& bench, Axis axis) {
       chart_fineness);
 }
 
-// Lines near the border are left out: they see a mirrored edge, which has a kink.
+// Omits lines near the border: they contain the mirrored edge, which has a kink.
 SlantedEdge measure(const Bench& bench, const Picture& picture, Axis axis, double reach,
                     int bins = bins_per_resel) {
   const bool along = axis == Axis::Along;
@@ -100,7 +100,7 @@ struct Laws {
     return edge_modulation(bench.camera(), bench.monitor(), axis, tilt, f);
   }
   [[nodiscard]] double profile(double x) const { return edge_profile(filter, axis, tilt, x); }
-  // As it is read between two bins: the mean over both.
+  // The profile interpolated between two bins: the mean over both.
   [[nodiscard]] double profile_in_bins(double x) const {
     constexpr int steps = 8;
     double sum = 0.0;
@@ -109,7 +109,7 @@ struct Laws {
     }
     return sum / steps;
   }
-  // The first crossing, from far on the dark side.
+  // The first crossing, searched from the dark side.
   [[nodiscard]] double crossing(double level) const {
     double x = -filter.radius() - 2.0;
     while (profile(x + 0.01) < level) x += 0.01;
@@ -118,13 +118,12 @@ struct Laws {
   }
 };
 
-// Noise: sixteen cameras of the kind, each with a fixed pattern of its own; their mean modulation
-// and its scatter.
+// With noise: mean modulation of sixteen cameras with different fixed patterns, and its scatter.
 CertificateRow with_noise(const Bench& bench, const base::Image& chart, const Laws& law,
                           double reach, double most, std::string_view name) {
   if (!bench.noise().shows(high)) return absent(name, "1", "the camera has no noise that shows");
   const double sigma = std::sqrt(bench.noise().total(high));
-  // The noise of a line's end moves its centroid by sigma sqrt 2 reach / step.
+  // Noise at the ends of a line moves its centroid by sigma sqrt 2 reach / step.
   const int lines = (law.axis == Axis::Along ? bench.rows() : bench.columns()) - 2 * bench.margin();
   const double shift = sigma * std::sqrt(2.0) * reach / (high - low) / std::sqrt(lines);
   if (shift > 0.12) return absent(name, "1", "its noise drowns the edge");
@@ -156,8 +155,7 @@ void measure_axis(const Bench& bench, Axis axis, Rows& rows, std::vector<Sharpne
   const auto measured = [&](double f) { return edge.modulation(f); };
   const auto expected = [&](double f) { return law.modulation(f); };
 
-  // Sharpening lifts the law above 1, and the errors with it; few lines leave bins with few
-  // samples.
+  // Sharpening raises the law, and its errors, above 1. Few lines leave few samples per bin.
   const int lines = (along ? bench.rows() : bench.columns()) - 2 * bench.margin();
   double worst = 0.0, most = std::max(1.0, 100.0 / lines);
   if (points.empty()) {
@@ -175,8 +173,7 @@ void measure_axis(const Bench& bench, Axis axis, Rows& rows, std::vector<Sharpne
   rows.push_back(within(named("MTF at Nyquist"), "1", measured(nyquist), expected(nyquist),
                         0.02 * most, "the same at 0.5 cycles per resel"));
   rows.push_back(with_noise(bench, chart, law, reach, most, named("MTF at 0.25, noise on")));
-  // Where the MTF may be off by 0.02, the frequency of a level may be by what the slope makes of
-  // it.
+  // The tolerance of a level's frequency is the tolerance of the MTF, 0.02, over the slope.
   const auto frequency_row = [&](std::string_view name, std::string_view unit, double level,
                                  double end, double factor, std::string_view text) {
     const double due = frequency_at(expected, level, end);
@@ -228,7 +225,7 @@ SlantedEdge measure_edge(const Plane& plane, int columns, int rows, double reach
     edge.position.push_back((static_cast<double>(bin) + 0.5 - half) / bins);
     edge.profile.push_back(sum[bin] / count[bin]);
   }
-  // The ends are what the edge stands between: an eighth of the reach, to hold noise down.
+  // Signals on both sides of the edge: means over an eighth of the reach, to reduce noise.
   const std::size_t size = edge.profile.size();
   const std::size_t end = std::max<std::size_t>(1, size / 16);
   for (std::size_t k = 0; k < end; ++k) {

@@ -10,7 +10,7 @@
 namespace earthshine::degrade {
 namespace {
 
-// A tube's frame shares its lag with the one before, so that frames are taken apart.
+// Consecutive frames of a tube are correlated by lag, so that every second frame is skipped.
 constexpr std::uint64_t frames_apart = 2;
 
 Names names_of(bool (*belongs)(const Stage&)) {
@@ -118,7 +118,7 @@ CertificateRow within(std::string_view name, std::string_view unit, double measu
   row.expected = expected;
   row.tolerance = tolerance;
   row.law = law;
-  // Not the other way round: a NaN must fail.
+  // In this form a NaN fails.
   row.verdict = std::abs(measured - expected) <= tolerance ? Verdict::Pass : Verdict::Fail;
   return row;
 }

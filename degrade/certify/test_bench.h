@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the certificate's tests share: the camera on the bench, charts of known light in front of
-// it, rows of results.
+// Shared by the tests of the certificate: the camera on the bench, charts of known light, result
+// rows.
 #pragma once
 
 #include <string>
@@ -13,19 +13,19 @@
 
 namespace earthshine::degrade {
 
-// Stages by what they do, to be left out where another is measured.
+// Stages by kind, to switch them off while others are measured.
 using Names = std::vector<std::string>;
 [[nodiscard]] Names operator+(Names a, const Names& b);
 namespace stage {
-extern const Names noise;    // both
-extern const Names uneven;   // what makes a flat field uneven
-extern const Names spatial;  // what spreads light over resels
-extern const Names limits;   // what a linear signal ends at: saturation, black, white
-extern const Names coding;   // gamma and steps
-extern const Names screen;   // everything behind the line
+extern const Names noise;    // signal noise and read noise
+extern const Names uneven;   // vary over a flat field
+extern const Names spatial;  // spread light over resels
+extern const Names limits;   // limit a linear signal: saturation, black, white
+extern const Names coding;   // gamma and quantisation
+extern const Names screen;   // all stages after the line
 }  // namespace stage
 
-// Vertical field of view that the charts fill.
+// Vertical field of view of the charts.
 inline constexpr double bench_fov_deg = 40.0;
 
 class Bench {
@@ -33,33 +33,33 @@ class Bench {
   Bench(const CctvCamera& camera, const Monitor& monitor, const CertifyOptions& options);
 
   [[nodiscard]] const CctvCamera& camera() const { return camera_; }
-  // The same with its iris held at an f-number of its range and the gain at 1, so that light and
-  // signal are proportional.
+  // The camera with a fixed f-number of its range and gain 1, so that its signal is proportional to
+  // light.
   [[nodiscard]] const CctvCamera& held() const { return held_; }
   [[nodiscard]] const Monitor& monitor() const { return monitor_; }
-  // The law of its noise.
+  // Law of its noise on the line.
   [[nodiscard]] const LineNoise& noise() const { return noise_; }
   [[nodiscard]] int columns() const { return monitor_.columns; }
   [[nodiscard]] int rows() const { return monitor_.rows; }
 
-  // cd/m^2 that the held camera turns into signal 1.
+  // Luminance that gives signal 1 in the held camera, cd/m^2.
   [[nodiscard]] double white_luminance() const;
-  // A chart of one pixel per resel, or of `fine` x `fine`; f(x, y) in resels gives the signal
-  // wanted of the held camera.
+  // A chart with one pixel per resel, or `fine` x `fine` pixels. f(x, y), with x and y in resels,
+  // is the signal in the held camera.
   template <class F>
   [[nodiscard]] base::Image chart(F f, int fine = 1) const;
   [[nodiscard]] base::Image flat(double signal) const;
 
   [[nodiscard]] Result run(const base::Image& chart, const CctvCamera& camera,
                            const Options& options) const;
-  // `frame` counts frames that have nothing in common but fixed patterns.
+  // Frames of different numbers share fixed patterns only.
   [[nodiscard]] Options options(Names off, std::uint64_t frame = 0) const;
-  // The held camera's linear signal, with noise: every limit, code and unevenness left out.
+  // Linear signal of the held camera with noise, without limits, coding and unevenness.
   [[nodiscard]] Picture linear(const base::Image& chart, std::uint64_t frame,
                                const Names& off = {}) const;
   [[nodiscard]] Picture linear(const base::Image& chart, const Options& options) const;
 
-  // Blocks for statistics, clear of the border and wider than the grain.
+  // Blocks for statistics: inside the margin and larger than the grain.
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
   [[nodiscard]] int margin() const { return margin_; }
 
@@ -74,24 +74,24 @@ class Bench {
 
 [[nodiscard]] Picture to_picture(const base::Image& image);
 
-inline constexpr double chain_rounding = 1e-5;  // of single precision, over a whole chain
+inline constexpr double chain_rounding = 1e-5;  // rounding of single precision over the whole chain
 
-// Rows. A number that is not finite fails.
+// Result rows. A number that is not finite fails.
 [[nodiscard]] CertificateRow within(std::string_view name, std::string_view unit, double measured,
                                     double expected, double tolerance, std::string_view law);
-// Four standard errors, and `rounding` of single precision.
+// Tolerance: four standard errors plus `rounding` of single precision.
 [[nodiscard]] CertificateRow within_errors(std::string_view name, std::string_view unit,
                                            const Estimate& measured, double expected,
                                            std::string_view law, double rounding = 0.0);
 [[nodiscard]] CertificateRow absent(std::string_view name, std::string_view unit,
                                     std::string_view why);
 
-// The one of two that is farther from 0; what is not a number is farthest.
+// The value that is farther from 0; NaN is farthest.
 [[nodiscard]] double farther(double a, double b);
-// Largest |a - b|; NaN if one is in either.
+// Largest |a - b|; NaN if either plane contains one.
 [[nodiscard]] double largest_difference(const Plane& a, const Plane& b);
 
-// The groups.
+// Groups of rows.
 using Rows = std::vector<CertificateRow>;
 [[nodiscard]] Rows photon_transfer_rows(const Bench& bench, std::vector<TransferPoint>& points);
 [[nodiscard]] Rows optics_rows(const Bench& bench);

@@ -13,14 +13,14 @@
 namespace earthshine::degrade {
 namespace {
 
-constexpr double least_share = 1e-6;   // of the largest variance: offsets below are dropped
-constexpr double least_weight = 1e-8;  // of the largest weight: below the rounding of a float
+constexpr double least_share = 1e-6;   // of the largest variance; smaller covariances are dropped
+constexpr double least_weight = 1e-8;  // of the largest weight; below float rounding
 
-// C_(dx, lag) for lags of either sign, read from the half that is stored.
+// C_(dx, lag) for lags of both signs, read from the stored half.
 struct Lag {
   int lag = 0;
   const Plane* plane = nullptr;
-  bool stored = true;  // else it is C_(-dx, -lag), read at z + d
+  bool stored = true;  // false: C_(-dx, -lag), read at z + d
   double largest = 0.0;
 };
 
@@ -42,7 +42,7 @@ std::vector<Lag> lags_of(const Covariance& noise, int dx) {
   return lags;
 }
 
-// bound[e] >= the largest |C'_(dx, e)|, from the largest |C| of each lag.
+// bound[e] >= largest |C'_(dx, e)|, from the largest |C| of each lag.
 std::vector<double> bounds(const AxisMap& map, const std::vector<Lag>& lags) {
   const int lines = map.in;
   std::vector<double> bound(size(lines)), sum(size(lines)), mixed(size(lines));
@@ -58,7 +58,7 @@ std::vector<double> bounds(const AxisMap& map, const std::vector<Lag>& lags) {
         high = std::max(high, v);
       }
     }
-    // Neighbours beyond the reach of what is mixed here share nothing with it.
+    // Lines whose sources do not meet [low, high] are not correlated with line y.
     for (int partner = y; partner < lines; ++partner) {
       double total = 0.0;
       bool met = false;
@@ -76,8 +76,8 @@ std::vector<double> bounds(const AxisMap& map, const std::vector<Lag>& lags) {
   return bound;
 }
 
-// One set of offsets (dx, 0), (dx, 1), ...: for each line y first T = sum over u of W(y, u) C(u,
-// v), then C'(y, y + e) = sum over v of W(y + e, v) T(v).
+// Offsets (dx, 0), (dx, 1), ...: for each line y, T(v) = sum over u of W(y, u) C(u, v), then C'(y,
+// y + e) = sum over v of W(y + e, v) T(v).
 class LineSum {
  public:
   LineSum(const AxisMap& map, const std::vector<Lag>& lags, int columns, int dx)
@@ -116,7 +116,7 @@ class LineSum {
     }
     if (high_ < low_) return;
     mixed_.assign(size(high_ - low_ + 1) * width_, 0.0F);
-    // The other half is read at x + dx, as far as that is in the picture.
+    // The other half is read at x + dx where this is inside the picture.
     const std::size_t left = size(std::max(0, -dx_)), cut = std::min(width_, size(std::abs(dx_)));
     const std::size_t from = size(std::max(0, dx_));
     for (std::size_t k = map_.start[size(y)]; k < map_.start[size(y) + 1]; ++k) {
@@ -214,15 +214,15 @@ void add_lines(Plane& out, const Plane& in, std::size_t width, const AxisMap& ma
 Covariance filtered_across(const Covariance& noise, const AxisMap& full) {
   double largest = 0.0;
   for (const double weight : full.weight) largest = std::max(largest, std::abs(weight));
-  // Without the weights that no float can tell from none.
+  // Drops weights below float rounding.
   const AxisMap map = without_taps_below(full, least_weight * largest);
   std::set<int> sides{0};
   for (const Offset& d : noise.offsets) sides.insert({d.dx, -d.dx});
-  // (0, 0) comes first, and its bound is the scale of all.
+  // (0, 0) comes first: its bound is the scale of the others.
   std::vector<int> order(sides.begin(), sides.end());
   std::stable_sort(order.begin(), order.end(),
                    [](int a, int b) { return std::abs(a) < std::abs(b); });
-  // What is worked out, before any of it is: wide filters take many offsets.
+  // Offsets are selected before their planes are allocated, because wide filters have many.
   struct Side {
     int dx = 0;
     std::vector<Lag> lags;
@@ -237,14 +237,14 @@ Covariance filtered_across(const Covariance& noise, const AxisMap& full) {
     if (dx == 0) scale = bound.front();
     for (std::size_t e = 0; e < bound.size(); ++e) {
       const bool variance = dx == 0 && e == 0;
-      // Well below the share that is dropped in the end, as the bound of the variance is one too.
+      // Far below the final threshold, because the variance is also known by its bound only.
       const bool matters = variance || bound[e] > 0.1 * least_share * scale;
       side.wanted.push_back(matters && (dx >= 0 || e > 0) ? 1 : 0);
       count += side.wanted.back();
     }
     wanted_of.push_back(std::move(side));
   }
-  // The same again turned, and what is made of that.
+  // Planes that exist at once: the result, its transpose and their filtered copy.
   constexpr std::uint64_t at_once = 3;
   base::check_room(
       at_once * count * noise.variance().size() * sizeof(float),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What noise_moments is made of: whole lines of pixels at a time, so that the loops over a line's
-// pixels are plain ones. Sums along lines are sums across the transposed picture.
+// Helpers of noise_moments that process whole lines of pixels in simple loops. Sums along lines are
+// sums across lines of the transposed picture.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace earthshine::degrade {
 
 [[nodiscard]] inline std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
-// Columns become rows; z = (x, y) goes to (y, x) and d = (dx, dy) to (dy, dx).
+// Transposes: z = (x, y) becomes (y, x), d = (dx, dy) becomes (dy, dx).
 [[nodiscard]] Plane transposed(const Plane& in, int columns, int rows);
 [[nodiscard]] Covariance transposed(const Covariance& noise);
 
@@ -20,7 +20,7 @@ namespace earthshine::degrade {
 // out line i += factor * sum over k of weight[k] * in line source[k]; lines of `width` values.
 void add_lines(Plane& out, const Plane& in, std::size_t width, const AxisMap& map, double factor);
 
-// C' = W C W^T across lines; W keeps the number of lines.
+// C' = W C W^T across lines; W does not change the number of lines.
 [[nodiscard]] Covariance filtered_across(const Covariance& noise, const AxisMap& map);
 
 }  // namespace earthshine::degrade

@@ -29,8 +29,7 @@ void check_same_size(const AxisMap& map) {
       "Use variance_after, which gives the variance on another grid");
 }
 
-// Weights w(i, u) v(i, u + lag), both maps with the same outputs: what C of that lag is multiplied
-// by.
+// Weights w(i, u) v(i, u + lag) of C at this lag; both maps have the same outputs.
 AxisMap product(const AxisMap& w, const AxisMap& v, int lag) {
   AxisMap map;
   map.in = w.in;
@@ -51,8 +50,9 @@ AxisMap product(const AxisMap& w, const AxisMap& v, int lag) {
   return map;
 }
 
-// sum over z and the stored d of a(z) b(z + d) C_d(z), the part with d = 0 times `zero`, the rest
-// times `others`. `turned` are the planes transposed: the sums over x run along whole lines.
+// Adds the sum over z and the stored d of a(z) b(z + d) C_d(z), with weight `zero` for d = 0 and
+// `others` for the rest. `turned`: the transposed planes, so that sums over x run along whole
+// lines.
 void add_pairs(Plane& out, const Covariance& noise, const std::vector<Plane>& turned,
                const PlaneMap& a, const PlaneMap& b, double zero, double others) {
   const std::size_t rows = size(noise.rows), wide = size(a.along.out());
@@ -82,7 +82,7 @@ std::vector<Plane> turned_planes(const Covariance& noise) {
   return turned;
 }
 
-// C_d(z) <- f(C_d(z), z, z + d), for the pairs inside the picture.
+// C_d(z) <- f(C_d(z), z, z + d) for pairs inside the picture.
 template <class F>
 Covariance for_pairs(Covariance noise, F f) {
   const std::ptrdiff_t columns = noise.columns, rows = noise.rows;
@@ -201,7 +201,7 @@ Plane covariance_between(const Covariance& noise, const PlaneMap& a, const Plane
   Plane out(size(a.along.out()) * size(a.across.out()));
   const std::vector<Plane> turned = turned_planes(noise);
   add_pairs(out, noise, turned, a, b, 1.0, 1.0);
-  // The offsets -d: a and b change places.
+  // The offsets -d: a and b are swapped.
   add_pairs(out, noise, turned, b, a, 0.0, 1.0);
   return out;
 }

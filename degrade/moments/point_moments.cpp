@@ -15,10 +15,10 @@
 namespace earthshine::degrade {
 namespace {
 
-constexpr double reach = 8.5;  // sigma; beyond lie 2e-17 of all signals
+constexpr double reach = 8.5;  // sigma; the probability beyond is 2e-17
 
-// Sums of g = f - reference, g^2, g z and g (z^2 - 1) over the normal distribution of z. The
-// reference is near the mean, so that the variance is no difference of large numbers.
+// Means of g = f - reference, g^2, g z and g (z^2 - 1) over a standard normal z. The reference is
+// near the mean, which avoids cancellation in the variance.
 struct Sums {
   double g = 0.0, g2 = 0.0, gz = 0.0, gzz = 0.0;
 
@@ -29,13 +29,13 @@ struct Sums {
     gzz += weight * value * (z * z - 1.0);
   }
   [[nodiscard]] PointMoments moments(double reference, double sigma) const {
-    // The variance holds at least the first two orders, whatever the rounding.
+    // The variance is at least the sum of its first two orders, despite rounding.
     return {reference + g, std::max(g2 - g * g, gz * gz + 0.5 * gzz * gzz), gz / sigma,
             gzz / (sigma * sigma)};
   }
 };
 
-// A smooth f: the trapezoid rule of step 1 is exact to exp(-2 pi^2) = 3e-9.
+// For smooth f: the trapezoidal rule of step 1 is exact to exp(-2 pi^2) = 3e-9.
 PointMoments far_from_kinks(const PointMap& map, double mean, double sigma, double reference) {
   static const auto weight = [] {
     std::array<double, 13> w{};
@@ -52,12 +52,12 @@ PointMoments far_from_kinks(const PointMap& map, double mean, double sigma, doub
   return sums.moments(reference, sigma);
 }
 
-// A smooth stretch from z = a to b.
+// Adds a smooth interval from z = a to b.
 template <class F>
 void add_smooth(Sums& sums, double a, double b, bool kink_at_a, F g) {
   if (kink_at_a) {
-    // S^(1/gamma) has no finite slope at its kink. z = a + (end - a) t^3 turns S^p into t^(3p + 2),
-    // which Gauss's rule takes like a polynomial.
+    // S^(1/gamma) has an infinite slope at its kink. z = a + (end - a) t^3 turns S^p into
+    // t^(3p + 2), which Gauss's rule integrates like a polynomial.
     const double end = std::min(b, a + 2.0);
     const base::GaussRule& rule = base::gauss_rule(14);
     for (std::size_t k = 0; k < rule.node.size(); ++k) {
@@ -77,11 +77,12 @@ void add_smooth(Sums& sums, double a, double b, bool kink_at_a, F g) {
   }
 }
 
-// Of the table: in mean / sigma and, as tails change fast with it, closer in ln sigma.
+// Spacing of the table in mean / sigma, and a finer one in ln sigma because tails change fast with
+// it.
 constexpr double spacing = 0.2, log_spacing = 0.1;
-constexpr int before = 2, after = 3;  // nodes of the fifth-degree polynomial around a place
+constexpr int before = 2, after = 3;  // nodes of the fifth-degree polynomial around a point
 
-// Moments on the nodes mean = i * spacing * sigma of one sigma = exp(level * log_spacing).
+// Moments at the nodes mean = i * spacing * sigma of one sigma = exp(level * log_spacing).
 struct Row {
   double sigma = 0.0;
   std::int64_t first = 0, last = -1;
@@ -98,7 +99,7 @@ struct Row {
   }
 };
 
-// Weights of the polynomial through the nodes -2 to 3 (Lagrange) at t in [0, 1].
+// Lagrange weights of the nodes -2 to 3 at t in [0, 1].
 using Weights = std::array<double, before + 1 + after>;
 Weights lagrange(double t) {
   const double a = t + 2.0, b = t + 1.0, c = t, d = t - 1.0, e = t - 2.0, f = t - 3.0;
@@ -110,8 +111,8 @@ Weights lagrange(double t) {
 double row_sigma(int level) { return std::exp(level * log_spacing); }
 int level_of(double sigma) { return static_cast<int>(std::floor(std::log(sigma) / log_spacing)); }
 
-// The moments as smooth functions of (mean / sigma, ln sigma): both scales follow sigma, on which
-// any f is smooth once the noise has gone over it. Only for the levels where it saves work.
+// Interpolates the moments in (mean / sigma, ln sigma). Both scale with sigma, because noise
+// smooths any f at the scale of sigma. Only levels for which a table saves time are tabulated.
 class Table {
  public:
   Table(const PointMap& map, const Plane& mean, const Plane& variance) {
@@ -159,7 +160,7 @@ class Table {
     const auto all = interpolated<4>(mean, sigma);
     if (!all) return {};
     PointMoments sum{(*all)[0], (*all)[1], (*all)[2], (*all)[3]};
-    // A polynomial may overshoot where the variance dies away.
+    // The polynomial may overshoot where the variance vanishes.
     sum.slope = std::max(sum.slope, 0.0);
     const double first = sum.slope * sigma, second = sum.curvature * sigma * sigma;
     sum.variance = std::max(sum.variance, first * first + 0.5 * second * second);
@@ -214,7 +215,7 @@ PointMoments clamped(double mean, double sigma, double low, double high) {
   const double reference = std::clamp(mean, low, high);
   const double a = (low - mean) / sigma, b = (high - mean) / sigma;
   const double r = (reference - mean) / sigma;
-  // Of z - r between the limits, and of the limits themselves, in units of sigma.
+  // Moments of z - r between the limits, and at the limits, in units of sigma.
   const double inside = a > 0.0 ? normal_probability(-a) - normal_probability(-b)
                                 : normal_probability(b) - normal_probability(a);
   const double pa = std::isfinite(a) ? normal_density(a) : 0.0;
@@ -273,7 +274,7 @@ PointMoments through(const PointMap& map, double mean, double sigma) {
 
 namespace {
 
-// take(i, mean, sigma, table) for each pixel.
+// Calls take(i, mean, sigma, table) for each pixel.
 template <class Take>
 void for_each_pixel(const PointMap& map, const Plane& mean, const Plane& variance, Take take) {
   const Table table(map, mean, variance);

@@ -10,7 +10,7 @@
 namespace earthshine::degrade {
 namespace {
 
-// Far above anything a camera can tell from white; keeps later stages away from infinity.
+// Far above any white; keeps the later stages finite.
 constexpr double endless = 1e12;
 
 }  // namespace

@@ -28,7 +28,7 @@ double target_signal(const CctvCamera& camera) {
   return 1.0;
 }
 
-// N after a frame on the way from `before` to `goal`.
+// f-number one frame after `before`, on the way to `goal`.
 double moved(const CctvCamera& camera, double before, double goal) {
   double stops = camera.iris_rate * 2.0 * std::log2(goal / before);
   if (camera.iris_slew > 0.0) stops = std::clamp(stops, -camera.iris_slew, camera.iris_slew);
@@ -45,7 +45,7 @@ double power_mean(const Plane& luminance, int columns, int rows, double p, doubl
     const double u = (2.0 * i + 1.0) / n - 1.0;
     return 1.0 - u * u;
   };
-  // The fourth power, which is the usual one, without std::pow().
+  // The usual fourth power, without std::pow().
   const auto raised = [p](double value) {
     const double squared = value * value;
     return p == 1.0 ? value : p == 4.0 ? squared * squared : std::pow(value, p);
@@ -57,7 +57,7 @@ double power_mean(const Plane& luminance, int columns, int rows, double p, doubl
       const double weight = 1.0 - centre * (1.0 - bell(x, columns) * bell_y);
       const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
                             static_cast<std::size_t>(x);
-      // Relative to the largest, so that no power overflows.
+      // Relative to the largest value, so that no power overflows.
       const double value = std::max(0.0, static_cast<double>(luminance[i])) / largest;
       sum += weight * raised(value);
       weights += weight;
@@ -109,7 +109,7 @@ Exposure expose(const CctvCamera& camera, double metered, std::optional<double> 
   exposure.f_number = before ? moved(camera, *before, goal) : goal;
   const double reached_lux = lens_transfer(camera, exposure.f_number) * metered;
   const double most = gain_of_db(camera.gain_max_db);
-  // A relative margin, because an iris inside its range meets the target only to rounding.
+  // Relative margin: an iris within its range meets the target only to rounding.
   const bool too_dark = reached_lux < wanted_lux * (1.0 - 1e-9);
   exposure.gain = too_dark ? std::min(wanted_lux / reached_lux, most) : 1.0;
   exposure.moving = std::abs(exposure.f_number / goal - 1.0) > 0.01;

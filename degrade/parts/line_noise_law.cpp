@@ -20,15 +20,15 @@ double LineNoise::fixed(double signal, int dx, int dy) const {
 
 double LineNoise::light_cumulant(double signal, int order) const {
   if (light == 0.0) return 0.0;
-  // A still picture is (1 - k) of its own field and k of the one before, whose deviation has shrunk
-  // by the root of the lag's factor.
+  // A still picture is (1 - k) of its field and k of the previous one, whose deviation is smaller
+  // by the root of the lag factor.
   const double k = field_to_field;
   const double fresh = std::pow(1.0 - k, order), old = std::pow(k, order);
   double kept = fresh + old * std::pow(lag, order / 2.0);
-  if (two_fields) kept = 0.5 * (kept + fresh + old * kept);  // the second one follows the first
-  // Counts of mean S / b + dark / b^2, each worth b.
+  if (two_fields) kept = 0.5 * (kept + fresh + old * kept);  // the second field follows the first
+  // Counts of mean S / b + dark / b^2, each of signal b.
   double counts = kept * std::pow(light, order) * (signal / light + dark / (light * light));
-  // Where the fixed pattern makes a resel brighter, its counts scatter more.
+  // The fixed pattern makes some resels brighter, and their counts scatter more.
   if (order == 3) counts += 3.0 * fixed_share * signal * signal * light * lag;
   return counts * light_filter.power_sum(order);
 }
@@ -37,8 +37,8 @@ LineNoise line_noise(const CctvCamera& camera, const Monitor& monitor) {
   LineNoise line;
   line.light_filter = filter_of(camera, monitor, Travels::LightNoise);
   line.amplifier_filter = filter_of(camera, monitor, Travels::AmplifierNoise);
-  // The share that stays from one reading to the next; a frame that is read at once lasts two
-  // fields. A first-order recursion of white noise keeps (1 - k) / (1 + k) of its variance.
+  // Share that remains from one reading to the next; a frame without interlace lasts two fields. A
+  // first-order recursion of white noise has (1 - k) / (1 + k) of its variance.
   const double kept = camera.interlace ? camera.lag : camera.lag * camera.lag;
   line.lag = (1.0 - kept) / (1.0 + kept);
   line.two_fields = camera.interlace;

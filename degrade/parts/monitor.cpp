@@ -13,7 +13,7 @@ namespace {
 constexpr int sinc_zeros = 8;
 const double fwhm_per_sigma = 2.0 * std::sqrt(2.0 * std::log(2.0));
 
-// Integral of sinc(x) sinc(x / 8) from 0 to x, x in zeros; Simpson's rule, 64 steps to a zero.
+// Integral of sinc(x) sinc(x / 8) from 0 to x, x in zeros; Simpson's rule, 64 steps per zero.
 double windowed_sinc_integral(double x) {
   const int steps = 2 * std::max(1, static_cast<int>(std::ceil(32.0 * x)));
   const double h = x / steps;

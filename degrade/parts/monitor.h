@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The monitor as numbers, and its stages: drive to light, phosphor spread, room light
-// (docs/cctv.md).
+// Settings and stages of the monitor: drive to light, phosphor spread, room light (docs/cctv.md).
 //   v       line signal, 0 black, 1 white
 //   I       luminance of the screen, cd/m^2
 //   resel   picture element of the monitor: square, 300 rows x 400 columns fill a 4:3 screen
@@ -49,11 +48,11 @@ void visit_monitor_fields(AnyMonitor& m, Visitor&& field) {
   field("reflectance", m.reflectance, Limits{0.0, 1.0}, "1", "of the screen");
 }
 
-// Whether a field does anything on this monitor.
+// Whether a field has an effect on this monitor.
 [[nodiscard]] bool is_used(const Monitor& monitor, std::string_view field);
 
-// The part of the screen that a picture of width x height takes: the whole height if it is no wider
-// than the screen (columns = rows * width / height), else the whole width. Resels stay square;
+// Part of the screen that a picture of width x height covers: the whole height if it is not wider
+// than the screen (columns = rows * width / height), else the whole width. Resels are square;
 // nothing is cropped.
 struct Grid {
   int columns = 0;
@@ -61,20 +60,20 @@ struct Grid {
 };
 [[nodiscard]] Grid picture_grid(int width, int height, const Monitor& monitor);
 
-// Integral of the point spread from -infinity to x (resels); 0 to 1, and not monotone for the sinc,
-// which is windowed (Lanczos, 8 zeros).
+// Integral of the point spread from -infinity to x (resels), from 0 to 1. Not monotone for the
+// sinc, which is windowed (Lanczos, 8 zeros).
 [[nodiscard]] double spread_integral(Spread spread, double width, double x);
 
-// A line of `resels` held values on a screen with `pixels_per_resel` samples each: the light of a
-// resel is constant over its width, spread by the phosphor, and read at the centres of the pixels.
-// Row sums are 1.
+// Maps a line of `resels` values to `pixels_per_resel` samples each. The light of a resel is
+// constant over its width, spread by the phosphor and sampled at the centres of the pixels. Row
+// sums are 1.
 [[nodiscard]] AxisMap spread_map(Spread spread, double width, int resels, int pixels_per_resel);
 
-// On the finer grid of pixels. Light adds, so this comes after gamma. Below zero (sinc) it is cut;
-// `negative_share` receives how much light that was, relative to all light.
+// Spreads light, on the finer grid of pixels. Applied after gamma, because light is additive.
+// Negative light (sinc) is clipped; `negative_share` is its ratio to all light.
 [[nodiscard]] Picture spread_on_screen(const Picture& light, const Monitor& monitor,
                                        double& negative_share);
-// Luminance that the room adds everywhere: reflectance * illuminance / pi.
+// Luminance added by the room, cd/m^2: reflectance * illuminance / pi.
 [[nodiscard]] double room_luminance(const Monitor& monitor);
 [[nodiscard]] Picture add_light(Picture light, double veil);
 

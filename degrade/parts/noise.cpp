@@ -13,8 +13,7 @@ namespace {
 
 constexpr double exact_poisson_below = 64.0;
 
-// Independent numbers of one stage; the planes and the two parts of the signal noise are kept
-// apart.
+// Sources of independent random numbers within a stage.
 enum class Part : std::uint64_t { Photons = 1, Pattern, Amplifier, BlackPattern };
 
 base::Key plane_key(const NoiseKey& key, base::Stream stream, std::uint64_t frame, Part part,
@@ -25,7 +24,8 @@ base::Key plane_key(const NoiseKey& key, base::Stream stream, std::uint64_t fram
       .with(plane);
 }
 
-// A pixel's counter holds its column and row, so that it does not depend on the picture's size.
+// A pixel's counter consists of its column and row, so that it does not depend on the picture's
+// size.
 std::uint64_t counter(std::size_t index, int columns) {
   const std::uint64_t width = static_cast<std::uint64_t>(columns);
   return (index / width) << 32 | index % width;
@@ -110,7 +110,7 @@ std::string describe_noise(const CctvCamera& camera) {
 
 namespace {
 
-// One key for each plane.
+// One key per plane.
 std::vector<base::Key> plane_keys(const Picture& picture, const NoiseKey& key, base::Stream stream,
                                   std::uint64_t frame, Part part) {
   std::vector<base::Key> keys;
@@ -128,7 +128,7 @@ Picture add_normal(Picture signal, const std::vector<base::Key>& keys, Sigma sig
   });
 }
 
-// A fixed pattern belongs to the camera: no frame number in its key.
+// A fixed pattern belongs to the camera: its key has no frame number.
 constexpr std::uint64_t every_frame = 0;
 
 }  // namespace
@@ -144,7 +144,7 @@ Picture add_grain(Picture signal, const NoiseLaw& law, const NoiseKey& key) {
   const auto photons = plane_keys(signal, key, base::Stream::ShotNoise, key.frame, Part::Photons);
   const auto gauss = plane_keys(signal, key, base::Stream::ShotNoise, key.frame, Part::Pattern);
   const double relative = law.c_is_fixed_pattern ? 0.0 : std::sqrt(law.c);
-  // Signal per count. Photon noise always has b > 0, and only it has dark counts.
+  // Signal per count. Photon noise always has b > 0; other forms have no dark counts.
   const double per_count = law.b;
   const double dark_counts = per_count > 0.0 ? law.dark / (per_count * per_count) : 0.0;
   return for_each_pixel(std::move(signal), [&](double s, std::size_t plane, std::uint64_t n) {
@@ -224,7 +224,7 @@ double normal_quantile(double p) {
 double poisson_quantile(double mean, double uniform) {
   if (!(mean > 0.0)) return 0.0;
   if (mean < exact_poisson_below) {
-    // Inversion: the first count whose cumulative probability exceeds the uniform number. The end
+    // Inversion: the first count whose cumulative probability exceeds the uniform number. The limit
     // of the loop is far beyond any count that 53 bits can reach.
     double probability = std::exp(-mean), cumulative = probability;
     int count = 0;

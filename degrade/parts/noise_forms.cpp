@@ -51,7 +51,7 @@ NoiseWords noise_words(const CctvCamera& camera) {
 
 namespace {
 
-// What a law of three numbers does not keep of a photon camera's noise.
+// Properties of a photon camera's noise that a law of three numbers omits.
 std::string lost_in_law(const NoiseLaw& law) {
   std::string lost;
   if ((law.c_is_fixed_pattern && law.c > 0.0) || law.black_pattern > 0.0) {

@@ -11,8 +11,8 @@
 namespace earthshine::degrade {
 namespace {
 
-// Multiplies every value by factor(u^2 + v^2), u and v its place off the centre in half heights. The
-// four quarters of a picture are alike, and so are its planes: factor() is called once for them.
+// Multiplies every value by factor(u^2 + v^2), (u, v) the position relative to the centre in half
+// heights. Quadrants and planes are equal, so that factor() is called once for all of them.
 template <class F>
 Picture times_radial(Picture picture, F factor) {
   const double half = picture.rows / 2.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the scene's luminance to the light on the sensor. Nothing here is random.
+// From the scene's luminance to the light on the sensor. Deterministic.
 #pragma once
 
 #include "degrade/parts/iris.h"
@@ -15,10 +15,10 @@ namespace earthshine::degrade {
 // r in resels. fov_deg: vertical, above 0 and below 180.
 [[nodiscard]] Picture fall_off_from_axis(Picture illuminance, double power, double fov_deg);
 
-// E <- (1 - g) E + g mean(E): stray light; the mean stays.
+// E <- (1 - g) E + g mean(E): stray light. The mean is unchanged.
 [[nodiscard]] Picture add_glare(Picture illuminance, double share);
 
-// S <- S (1 - droop r^2), r from 0 in the centre to 1 in the corners: the centre keeps its signal.
+// S <- S (1 - droop r^2), r from 0 in the centre to 1 in the corners.
 [[nodiscard]] Picture shade(Picture signal, double droop);
 
 }  // namespace earthshine::degrade

@@ -10,7 +10,7 @@
 namespace earthshine::degrade {
 namespace {
 
-// f(value, other value at the same place).
+// Replaces each value by f(value, value of `other` at the same position).
 template <class F>
 Picture combine(Picture picture, const Picture& other, F f) {
   for_each_run(picture, [&](std::size_t plane, std::size_t first, std::size_t last) {

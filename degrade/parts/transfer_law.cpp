@@ -15,13 +15,13 @@ double gaussian(double sigma, double f) {
   return std::exp(-sigma * sigma * (1.0 - std::cos(2.0 * base::pi * f)));
 }
 
-// RS-170: a line shows the picture during 52.66 us, over all columns of the screen.
+// RS-170: 52.66 us of picture per line, over all columns of the screen.
 double cycles_per_resel(double mhz, const Monitor& monitor) {
   return mhz * 52.66 / monitor.columns;
 }
 
-// Down to 1 / sqrt 2 at B; where B lies beyond the resels' Nyquist frequency, the variance of the
-// continuous Gaussian that is.
+// 1 / sqrt 2 at B. From the Nyquist frequency of the resels on, the variance of the continuous
+// Gaussian.
 double bandwidth(double mhz, const Monitor& monitor, double f) {
   if (mhz == 0.0) return 1.0;
   const double b = cycles_per_resel(mhz, monitor);
@@ -30,9 +30,9 @@ double bandwidth(double mhz, const Monitor& monitor, double f) {
   return gaussian(std::sqrt(variance), f);
 }
 
-// Of each stage that blurs or sharpens, in order.
+// The stages that blur or sharpen, in order.
 struct TransferRow {
-  bool picture, light_noise, amplifier_noise;  // what passes it
+  bool picture, light_noise, amplifier_noise;  // signals that pass it
   double (*transfer)(const CctvCamera&, const Monitor&, Axis, double frequency);
 };
 constexpr TransferRow table[] = {
@@ -90,8 +90,8 @@ double transfer(const CctvCamera& camera, const Monitor& monitor, Travels what, 
 
 std::vector<double> taps(const CctvCamera& camera, const Monitor& monitor, Travels what,
                          Axis axis) {
-  // T has the period 1 and is smooth, so the trapezium rule gives its Fourier coefficients exactly,
-  // but for those beyond `points`, far more than any blur here reaches.
+  // T is smooth and has the period 1, so that the trapezoidal rule gives its Fourier coefficients
+  // exactly, except for those beyond `points`, which no blur here reaches.
   constexpr int points = 512;
   std::vector<double> spectrum;
   spectrum.reserve(points);
@@ -106,7 +106,7 @@ std::vector<double> taps(const CctvCamera& camera, const Monitor& monitor, Trave
              std::cos(2.0 * base::pi * (static_cast<double>(k) * n / points));
     }
     half.push_back(sum / points);
-    // Two in a row, because sharpening may pass through zero.
+    // Two in succession, because sharpening may pass through zero.
     if (n > 1 && std::abs(half.back()) < 1e-9 && std::abs(half[half.size() - 2]) < 1e-9) break;
   }
   while (half.size() > 1 && std::abs(half.back()) < 1e-9) half.pop_back();
@@ -118,8 +118,8 @@ std::vector<double> taps(const CctvCamera& camera, const Monitor& monitor, Trave
 double gaussian_tap(double sigma, int n) {
   const int reach = static_cast<int>(std::ceil(12.0 * sigma)) + 12;
   if (std::abs(n) > reach) return 0.0;
-  // Fourier coefficient of the transfer, by the trapezium rule over its period. With fewer points
-  // than twice the reach a far tap would be taken for a near one.
+  // Fourier coefficient of the transfer, by the trapezoidal rule over its period. Fewer points than
+  // twice the reach would alias far taps.
   const int points = 4 * reach;
   double sum = 0.0;
   for (int k = 0; k < points; ++k) {
@@ -160,8 +160,8 @@ Filter filter_of(const CctvCamera& camera, const Monitor& monitor, Travels what)
 }
 
 double edge_coverage(double angle, double x) {
-  // The sum of two uniform variables of widths a and b < a: density a trapezium of height 1 / a,
-  // flat within (a - b) / 2, zero beyond (a + b) / 2.
+  // The sum of two uniform variables of widths a and b < a. Its density is a trapezium of
+  // height 1 / a, flat within (a - b) / 2 and zero beyond (a + b) / 2.
   const double c = std::abs(std::cos(angle)), s = std::abs(std::sin(angle));
   const double a = std::max(c, s), b = std::min(c, s);
   const double flat = 0.5 * (a - b), foot = 0.5 * (a + b), away = std::abs(x);

@@ -52,14 +52,14 @@ class Sensing {
     if (!std::isfinite(exact)) return Reading::Empty;
     const double cosine =
         std::abs(glm::dot(normal_.at(i), glm::normalize(place_.at(i) - position_)));
-    // 90 degrees takes all there is, also what rounding has put beyond.
+    // 90 degrees accepts all values, also those that rounding moved beyond.
     if (sensor_.max_incidence_deg < 90.0 && cosine < least_cosine_) return Reading::Grazing;
     if (sensor_.min_signal_per_m2 > 0.0 &&
         base::luminance(Vectors(layers_, "albedo", rgb).at(i)) * cosine / (exact * exact) <
             sensor_.min_signal_per_m2) {
       return Reading::Dim;
     }
-    // The counter holds the pixel's column and row; two draws for each.
+    // The key consists of the pixel's column and row; two draws per pixel.
     const auto width = static_cast<std::size_t>(layers_.width);
     const base::Key key = key_.with(i / width << 32U | i % width);
     if (base::uniform(key, 0) < sensor_.dropout) return Reading::Lost;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a range sensor (structured light, time of flight, scanning laser) would report in place of
-// the exact distances of a rendered picture.
+// Readings of a range sensor (structured light, time of flight, scanning laser), from the exact
+// distances of a rendered picture.
 //   r      distance along the ray, m
-//   theta  angle of incidence: between the ray and the surface's normal
-//   rho    diffuse reflectance, luminance of the layer albedo
+//   theta  angle of incidence, between the ray and the surface normal
+//   rho    diffuse reflectance: luminance of the layer albedo
 //   sigma(r) = noise_m + noise_m_per_m r + noise_m_per_m2 r^2: standard deviation, Gaussian
-// Triangulation: disparity is measured with constant noise, hence sigma = (m / f b) r^2 (Khoshelham
-// and Elberink 2012, Sensors 12(2)); the Kinect fits 0.0012 + 0.0019 (z - 0.4)^2 m between 10 and
-// 60 degrees of incidence and gives no reading much beyond (Nguyen, Izadi and Lovell 2012,
-// 3DIMPVT). Time of flight: the returned signal, rho cos(theta) / r^2 for a Lambertian surface
-// wider than the beam, has a floor below which there is no reading.
+// Triangulation: disparity has constant noise, hence sigma = (m / f b) r^2 (Khoshelham and Elberink
+// 2012, Sensors 12(2)). The Kinect fits 0.0012 + 0.0019 (z - 0.4)^2 m between 10 and 60 degrees of
+// incidence and rarely reads beyond (Nguyen, Izadi and Lovell 2012, 3DIMPVT). Time of flight: the
+// returned signal, rho cos(theta) / r^2 for a Lambertian surface wider than the beam, must exceed a
+// minimum.
 #pragma once
 
 #include <cstdint>
@@ -55,10 +55,10 @@ void visit_range_fields(Sensor& s, Visitor&& field) {
 
 struct RangeKey {
   std::uint64_t seed = 1;
-  std::uint64_t view = 0;  // tells the cameras of one run apart
+  std::uint64_t view = 0;  // distinguishes the cameras of a run
 };
 
-// Why pixels have no return; each pixel counts once, under the first that applies.
+// Reasons for missing returns. Each pixel counts once, under the first reason that applies.
 struct RangeReport {
   std::uint64_t returned = 0, empty = 0, grazing = 0, dim = 0, lost = 0, out_of_range = 0;
 };
@@ -68,23 +68,23 @@ struct RangeView {
   RangeReport report;
 };
 
-// `layers` of one camera at `position`: range, N, P as raytrace/frame/layers.h has them, and albedo
-// when min_signal_per_m2 > 0. Limits of range apply to the noisy distance, before it is rounded to
-// quantum_m. The same bytes on any number of threads; a pixel's noise does not depend on the size
-// of the picture. Throws base::Error (Work) when a layer is missing.
+// layers: range, N and P of one camera at `position` as in raytrace/frame/layers.h, and albedo if
+// min_signal_per_m2 > 0. Range limits apply to the noisy distance, before it is rounded to
+// quantum_m. Equal bytes for any number of threads; a pixel's noise does not depend on the size of
+// the picture. Throws base::Error (Work) if a layer is missing.
 [[nodiscard]] RangeView sense_range(const base::Image& layers, const Vec3& position,
                                     const RangeSensor& sensor, const RangeKey& key = {});
 
-// [[range_sensor]] tables of a scene to settings. docs/scene-format.md lists the keys.
+// Reads [[range_sensor]] tables of a scene. docs/scene-format.md lists the keys.
 
-// The [[range_sensor]] of that name. Throws base::Error (Input) for an unknown name or key (with
-// the nearest), a value of the wrong kind or out of range, and limits that contradict each other.
-// of, named_at: the camera that names it, and where, for the message.
+// The [[range_sensor]] of this name. Throws base::Error (Input) for an unknown name or key (with
+// the nearest one), a value of the wrong type or out of range, and contradictory limits. of,
+// named_at: the camera that names it and the position, for messages.
 [[nodiscard]] RangeSensor resolve_range_sensor(const scenes::Scene& scene, const std::string& name,
                                                const std::string& of = {},
                                                const std::optional<base::Location>& named_at = {});
 
-// Everything that resolve_range_sensor would refuse, for all tables and all cameras of the scene.
+// Throws the errors of resolve_range_sensor for all tables and all cameras of the scene.
 void check_range_sensors(const scenes::Scene& scene);
 
 }  // namespace earthshine::degrade

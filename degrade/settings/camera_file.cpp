@@ -6,7 +6,7 @@
 namespace earthshine::degrade {
 namespace {
 
-// Spreads each point over a quarter of a line.
+// Smaller bandwidths blur each point over more than a quarter of a line.
 constexpr double least_bandwidth_mhz = 0.01;
 
 using base::Blame;
@@ -21,7 +21,7 @@ const Setting* find_setting(const SettingTable& table, std::string_view key) {
   return nullptr;
 }
 
-// What `preset = "..."` names; nullptr when the table has no such key.
+// The preset that `preset = "..."` names; nullptr without this key.
 const Preset* named_preset(const SettingTable& table) {
   const Setting* const setting = find_setting(table, "preset");
   if (setting == nullptr) return nullptr;
@@ -36,7 +36,7 @@ const Preset* starting_point(const SettingTable& table) {
   return named != nullptr ? named : find_preset(table.name);
 }
 
-// The word of `noise` that a setting belongs to, or "".
+// Value of `noise` for which a setting has an effect, or "".
 std::string_view form_of(std::string_view key) {
   if (key == "snr_db") return "\"report\" or \"spec\"";
   for (const NoiseMode mode : {NoiseMode::Photon, NoiseMode::Law}) {
@@ -49,7 +49,7 @@ std::string_view form_of(std::string_view key) {
   return {};
 }
 
-// What a setting that may have no effect needs beside it.
+// Condition under which a setting has an effect.
 std::string company_of(std::string_view key) {
   if (const std::string_view form = form_of(key); !form.empty()) {
     return "noise = " + std::string(form);
@@ -96,7 +96,7 @@ CctvCamera read_camera(const SettingTable& table) {
     if (setting.key == "preset") continue;
     read_setting(setting, "[[cctv]]", camera, visit, {"preset", "name"});
   }
-  // Only now, because a later key may say which iris or noise it is.
+  // Checked last, because a later key may set the iris or the noise.
   check_one_form_of_noise(table);
   check_used(table, camera);
   if (camera.f_number_min > camera.f_number_max) {
@@ -119,7 +119,7 @@ const SettingTable* find_table(const scenes::Scene& scene, std::string_view name
   return nullptr;
 }
 
-// Whose monitor it is when the scene has none.
+// The preset whose monitor is used if the scene has none.
 const Preset* preset_behind(const scenes::Scene& scene, const std::string& name) {
   const SettingTable* const table = find_table(scene, name);
   return table != nullptr ? starting_point(*table) : find_preset(name);
@@ -147,7 +147,7 @@ Monitor read_monitor(const SettingTable& table) {
   return monitor;
 }
 
-// For each key in use: its place in the table, else what the preset says, else "default".
+// Source of each key in use: its position in the table, else the preset's source, else "default".
 class SourceList {
  public:
   SourceList(const SettingTable* table, const std::vector<SettingSource>* preset)

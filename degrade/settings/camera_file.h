@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// [[cctv]] and [monitor] tables of a scene or a camera file to settings. docs/cctv.md lists the
-// keys.
+// Reads [[cctv]] and [monitor] tables of a scene or a camera file. docs/cctv.md lists the keys.
 #pragma once
 
 #include <optional>
@@ -14,22 +13,21 @@
 
 namespace earthshine::degrade {
 
-// The camera of that name: a [[cctv]] table of the scene, else a preset. A table starts from
-// `preset = "..."`, else from the preset of its own name, else from the defaults of CctvCamera.
-// Throws base::Error (Input) for an unknown name or key (with the nearest), a value of the wrong
-// kind or out of range, a key without effect in this camera, the noise given in two forms, and
-// limits that contradict each other.
-// of, named_at: what names it, and where, for the message.
+// The camera of this name: a [[cctv]] table of the scene, else a preset. A table starts from
+// `preset = "..."`, else from the preset of its name, else from the defaults of CctvCamera. Throws
+// base::Error (Input) for an unknown name or key (with the nearest one), a value of the wrong type
+// or out of range, a key without effect in this camera, noise in two forms, and contradictory
+// limits. of, named_at: the user of the camera and the position, for messages.
 [[nodiscard]] CctvCamera resolve_camera(const scenes::Scene& scene, const std::string& name,
                                         const std::string& of = {},
                                         const std::optional<base::Location>& named_at = {});
 
-// The monitor that the camera of that name is watched on: the scene's [monitor], which starts from
-// the monitor of `preset = "..."`, else from the default one; without that table the monitor of the
-// preset that the camera is or starts from, else the default one. Throws as above.
+// The monitor for the camera of this name. The scene's [monitor] starts from the monitor of
+// `preset = "..."`, else from the default one. Without this table it is the monitor of the camera's
+// preset, else the default one. Throws as above.
 [[nodiscard]] Monitor resolve_monitor(const scenes::Scene& scene, const std::string& name);
 
-// A camera, its monitor, and where each setting in use comes from: the place in the file, the
+// A camera, its monitor, and the source of each setting in use: its position in the file, the
 // source that the preset states, or "default".
 struct ResolvedCamera {
   std::string name;
@@ -44,8 +42,8 @@ struct ResolvedCamera {
 
 [[nodiscard]] std::vector<std::string> preset_names();
 
-// Everything that resolve_camera and resolve_monitor would refuse, for all tables and all cameras
-// of the scene.
+// Throws the errors of resolve_camera and resolve_monitor for all tables and all cameras of the
+// scene.
 void check_settings(const scenes::Scene& scene);
 
 }  // namespace earthshine::degrade

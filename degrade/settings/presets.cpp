@@ -6,14 +6,14 @@
 namespace earthshine::degrade {
 namespace {
 
-// A preset while it is written down: value and source in one line, so that neither goes alone.
+// Builds a preset: value and source in one call, so that neither is missing.
 class Writer {
  public:
   Writer(std::string_view name, std::string_view about) {
     preset_.name = name;
     preset_.about = about;
   }
-  // Starts from another camera; what is not set again keeps its source.
+  // Starts from another camera; settings that are not set again keep their source.
   Writer(std::string_view name, std::string_view about, Preset other) : preset_(std::move(other)) {
     preset_.name = name;
     preset_.about = about;
@@ -39,7 +39,7 @@ class Writer {
     });
     return *this;
   }
-  // All settings in use that have no source yet keep their default.
+  // Gives this source to all settings in use that have none; they keep their defaults.
   Writer& rest(std::string_view source) {
     visit_camera_fields(preset_.camera, [&](const char* key, const auto&, auto&&...) {
       if (!has(preset_.sources, key)) note(preset_.sources, key, source);
@@ -47,7 +47,7 @@ class Writer {
     return *this;
   }
 
-  // In the order of the fields, without what has no effect in this camera.
+  // Sources in the order of the fields, without settings that have no effect in this camera.
   [[nodiscard]] Preset done() const {
     Preset result = preset_;
     result.sources.clear();
@@ -80,7 +80,7 @@ class Writer {
   Preset preset_;
 };
 
-// A black and white 525-line monitor in a dim flight deck.
+// A black-and-white 525-line monitor in a dim flight deck.
 Writer with_monitor(Writer writer) {
   return writer.show(&Monitor::rows, 300, "[1990] resolution of the monitor, 300 x 400")
       .show(&Monitor::columns, 400, "[1990] resolution of the monitor, 300 x 400")

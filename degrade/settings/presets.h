@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cameras that ship, each number with where it comes from.
+// The cameras that ship with the program, with the source of each number.
 #pragma once
 
 #include <span>
@@ -12,21 +12,21 @@
 
 namespace earthshine::degrade {
 
-// Where the value of a setting comes from. In a camera that ships one of
+// Source of a setting's value. In a shipped camera one of
 //   [1990]   NASA Johnson Space Center's report on simulated CCTV pictures of the payload bay, 1990
 //   [GCTA]   Apollo ground-commanded television assembly, an RCA SIT camera of the same makers
 //   [IUCr]   International Tables for Crystallography C, 7.1.6.5.4, on SIT tubes
 //   [SCOM]   Shuttle Crew Operations Manual 2.3, the closed-circuit television
 //   [shutref] NASA's Shuttle Reference, closed-circuit television: monochrome, colour by the lens
 //   computed: from the other numbers or a standard
-//   estimate: usual for the kind of device and the years; no flight figure was found
+//   estimate: usual for this kind of device at the time; no flight figure was found
 //   none: off, with the reason
 struct SettingSource {
   std::string key;
   std::string source;
 };
 
-// sources: one for each setting that is in use, in the order of the fields; monitor_sources too.
+// sources: one per setting in use, in the order of the fields; monitor_sources likewise.
 struct Preset {
   std::string_view name;
   std::string_view about;
@@ -37,6 +37,6 @@ struct Preset {
 };
 
 [[nodiscard]] std::span<const Preset> presets();
-[[nodiscard]] const Preset* find_preset(std::string_view name);  // nullptr when there is none
+[[nodiscard]] const Preset* find_preset(std::string_view name);  // nullptr if there is none
 
 }  // namespace earthshine::degrade

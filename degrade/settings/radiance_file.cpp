@@ -12,10 +12,10 @@ namespace earthshine::degrade {
 namespace {
 
 constexpr std::size_t strip_pixels = std::size_t{1} << 22;
-// Lines that no compression of OpenEXR splits (DWAB's block).
+// A multiple of the lines in a compression block of OpenEXR (DWAB has the largest).
 constexpr int strip_lines = 256;
-// The picture itself, and the planes that the chain makes of it: those of the screen, too, when
-// their number does not depend on the sensor's grid.
+// The picture and the chain's planes, also on the screen if their number does not depend on the
+// sensor's grid.
 constexpr double copies = 3.0;
 
 void check_memory(std::size_t pixels, int channels, double screen_pixels_per_pixel) {
@@ -31,8 +31,8 @@ void check_memory(std::size_t pixels, int channels, double screen_pixels_per_pix
                     "Crop or shrink it, or leave the stage sensor-grid on");
 }
 
-// One plane of luminance, or three of colour; what is below zero counted and made black, as the
-// chain does.
+// One plane of luminance, or three of colour. Negative values are counted and become 0, as in the
+// chain.
 Picture planes_of(base::Image strip, bool colour, std::size_t& negative_pixels) {
   Picture picture{strip.width, strip.height, {}};
   if (colour && strip.channels.size() == 3) {
@@ -52,7 +52,7 @@ Picture planes_of(base::Image strip, bool colour, std::size_t& negative_pixels) 
   return picture;
 }
 
-// Rows come in order; each adds to the rows of the grid that it lies in.
+// Adds input rows, in order, to the rows of the grid that they overlap.
 class RowSums {
  public:
   RowSums(int in_rows, Grid grid, std::size_t planes)

@@ -20,7 +20,7 @@ std::size_t mirrored(int index, int size) {
   return static_cast<std::size_t>(m < size ? m : period - 1 - m);
 }
 
-// Where a line has values other than 0: what blooms and streaks is often a small part of a picture.
+// Range of the nonzero values of a line; bloom and smear often cover a small part of a picture.
 struct Extent {
   std::size_t first = std::numeric_limits<std::size_t>::max(), end = 0;
 
@@ -34,8 +34,8 @@ struct Extent {
   }
 };
 
-// Rows are taken eight at a time, their values at one place side by side, so that a weight meets
-// eight neighbours in memory whatever the places it applies to.
+// Processes eight rows at a time with interleaved values, so that each weight applies to eight
+// adjacent values in memory.
 constexpr std::size_t side_by_side = 8;
 
 Plane map_rows(const Plane& in, int columns, int rows, const AxisMap& map) {
@@ -54,7 +54,7 @@ Plane map_rows(const Plane& in, int columns, int rows, const AxisMap& map) {
                           for (std::size_t x = 0; x < out_width; ++x) {
                             std::array<double, side_by_side> sum{};
                             const std::size_t stop = map.start[x + 1];
-                            // Sources ascend.
+                            // Sources are in ascending order.
                             if (map.start[x] == stop || map.source[map.start[x]] >= lit.end ||
                                 map.source[stop - 1] < lit.first) {
                               continue;
@@ -135,7 +135,7 @@ AxisMap area_average(int in, int out) {
     std::vector<double> weight;
     for (int j = first; j < in && (j < end || j == first); ++j) {
       const double share = std::min(end, j + 1.0) - std::max(begin, static_cast<double>(j));
-      // A sliver is rounding of an end that lies on a pixel's border.
+      // A sliver is the rounding of an end on a pixel's border.
       weight.push_back(share > 1e-12 * step ? share : 0.0);
     }
     add_output(map, first, weight);
@@ -147,11 +147,11 @@ namespace {
 
 std::vector<double> find_discrete_gaussian(double sigma) {
   const double t = sigma * sigma;
-  // e^-t I_n(t) = (1/pi) integral over [0, pi] of exp(-t (1 - cos u)) cos(n u) du. The trapezoid
-  // rule on a periodic function is exact up to terms of order 2 * steps - n, far beyond any kernel
-  // here.
+  // e^-t I_n(t) = (1/pi) integral over [0, pi] of exp(-t (1 - cos u)) cos(n u) du. For a periodic
+  // function the trapezoidal rule is exact up to terms of order 2 * steps - n, far beyond any
+  // kernel here.
   const int steps = std::max(512, static_cast<int>(std::ceil(16.0 * sigma)));
-  std::vector<double> weight;  // of each step, whatever n
+  std::vector<double> weight;  // of each step, for all n
   for (int k = 0; k <= steps; ++k) {
     const double end = k == 0 || k == steps ? 0.5 : 1.0;
     weight.push_back(end * std::exp(-t * (1.0 - std::cos(base::pi * k / steps))));
@@ -174,7 +174,7 @@ std::vector<double> find_discrete_gaussian(double sigma) {
 
 }  // namespace
 
-// A study asks for the same few widths thousands of times.
+// Cached, because a study uses the same few widths thousands of times.
 std::vector<double> discrete_gaussian(double sigma) {
   constexpr std::size_t most_kept = 64;
   static std::mutex guard;
@@ -204,7 +204,7 @@ AxisMap symmetric_filter(int size, const std::vector<double>& taps) {
   AxisMap map;
   map.in = size;
   const int radius = static_cast<int>(taps.size() / 2);
-  std::size_t first = 0, count = 0;  // of the first output that no border is near to
+  std::size_t first = 0, count = 0;  // of the first output away from the borders
   for (int i = 0; i < size; ++i) {
     const bool inside = i >= radius && i + radius < size;
     if (!inside || count == 0) {
@@ -212,7 +212,7 @@ AxisMap symmetric_filter(int size, const std::vector<double>& taps) {
       if (inside) first = map.start[map.start.size() - 2], count = map.source.size() - first;
       continue;
     }
-    // The same a few places on.
+    // The same taps, shifted.
     const std::size_t on = static_cast<std::size_t>(i - radius);
     for (std::size_t k = first; k < first + count; ++k) {
       map.source.push_back(map.source[k] + on);

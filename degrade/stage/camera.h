@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A CCTV camera as numbers: lens, iris, sensor, noise, electronics (docs/cctv.md).
+// Settings of a CCTV camera: lens, iris, sensor, noise, electronics (docs/cctv.md).
 //   S       video signal, linear, 1 at the reference white
 //   N       f-number, so that the sensor receives E = pi tau L / (4 N^2) lx from luminance L
 //   a, b, c noise law sigma^2(S) = a + b S + c S^2
-// Lengths in the picture are in resels: picture elements of the monitor, 300 to a picture's height.
+// Lengths in the picture are in resels: picture elements of the monitor, 300 per picture height.
 #pragma once
 
 #include <array>
@@ -13,15 +13,15 @@
 
 namespace earthshine::degrade {
 
-// What the automatic iris looks at. Fixed: it does not move.
+// Metering of the automatic iris. Fixed: the iris does not move.
 enum class IrisMode { Fixed, Peak, Normal, Average };
 [[nodiscard]] constexpr std::array<std::string_view, 4> words_of(IrisMode) {
   return {"fixed", "peak", "normal", "average"};
 }
 
-// Where a, b and c come from.
-//   Report  c = 1/SNR^2: a percentage of each point's intensity, as the 1990 report has it
-//   Spec    a = 1/SNR^2: white level over rms noise, as camera data sheets have it
+// Source of a, b and c.
+//   Report  c = 1/SNR^2: a percentage of each point's intensity, as in the 1990 report
+//   Spec    a = 1/SNR^2: white level over rms noise, as in camera data sheets
 //   Photon  b = F^2/n, a = (read/n)^2, c = prnu^2, n the electrons at white: EMVA 1288 and tubes
 //   Law     a, b and c themselves
 enum class NoiseMode { None, Report, Spec, Photon, Law };
@@ -29,7 +29,7 @@ enum class NoiseMode { None, Report, Spec, Photon, Law };
   return {"none", "report", "spec", "photon", "law"};
 }
 
-// The defaults are a camera without faults: its iris finds any scene and nothing is added or lost.
+// The defaults are an ideal camera: its iris adapts to any scene, and it loses or adds no light.
 struct CctvCamera {
   bool colour = false;
 
@@ -154,8 +154,7 @@ void visit_camera_fields(Camera& c, Visitor&& field) {
   field("interlace", c.interlace, no_limits, "", "two fields a frame, each with noise of its own");
 }
 
-// Whether a field does anything in this camera: a setting that does nothing is refused by the
-// reader.
+// Whether a field has an effect in this camera. The reader refuses settings without effect.
 [[nodiscard]] bool is_used(const CctvCamera& camera, std::string_view field);
 
 }  // namespace earthshine::degrade

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a setting is. Each settings struct has one list of its fields (visit_fields); the scene
-// reader, the program's listing and the table in docs/cctv.md all walk that list.
+// Description of settings. Each settings struct lists its fields once (visit_fields); the scene
+// reader, the program's listing and the table in docs/cctv.md iterate over this list.
 #pragma once
 
 #include <array>
@@ -9,15 +9,15 @@
 
 namespace earthshine::degrade {
 
-// Numbers allowed, both ends included. Not used for words and switches.
+// Allowed numbers, both ends included. Unused for words and switches.
 struct Limits {
   double least = 0.0;
   double most = 0.0;
 };
 inline constexpr Limits no_limits{};
 
-// The word of an enumerator; words_of(E) is overloaded beside each enum, in the order of its
-// enumerators.
+// The word of an enumerator. words_of(E), defined beside each enum, lists the words in the order of
+// its enumerators.
 template <class Enum>
 [[nodiscard]] constexpr std::string_view word_of(Enum value) {
   return words_of(value)[static_cast<std::size_t>(value)];

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What goes from stage to stage: one plane (luminance) or three (red, green, blue), rows from the
-// top.
+// The picture between stages: one plane (luminance) or three (red, green, blue), rows from the top.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +32,7 @@ template <class F>
 // Channel Y, or R, G and B.
 [[nodiscard]] base::Image to_image(Picture picture);
 
-// Calls body(plane, first, last) for runs of pixels, in parallel; body may write only pixels of its
+// Calls body(plane, first, last) for runs of pixels in parallel; body may write only pixels of its
 // run.
 void for_each_run(
     const Picture& picture,

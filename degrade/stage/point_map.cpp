@@ -68,8 +68,8 @@ double PointMap::operator()(double signal) const {
 }
 
 PointMap& PointMap::append(Step step, const std::vector<double>& at) {
-  // No step falls, so a value has one signal behind it, or a level stretch whose ends are kinks
-  // already, or none.
+  // All steps are monotone, so that a value has one preimage, none, or an interval whose ends are
+  // already kinks.
   const auto signal_behind = [&](double v) -> std::optional<double> {
     for (auto before = steps_.rbegin(); before != steps_.rend(); ++before) {
       switch (before->kind) {

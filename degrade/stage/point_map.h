@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A map of the signal point by point, put together from the stages that are one: clamp, gain, clip,
-// gamma, quantisation, screen. It never falls. It knows where it has kinks and where it is level,
-// so that the moments of noise behind it can be integrated piece by piece
-// (degrade/moments/point_moments.h).
+// A monotone point map of the signal, composed of stages: clamp, gain, clip, gamma, quantisation,
+// screen. It knows its kinks and its constant intervals, so that the moments of noise can be
+// integrated piecewise (degrade/moments/point_moments.h).
 #pragma once
 
 #include <vector>
@@ -11,7 +10,7 @@ namespace earthshine::degrade {
 
 class PointMap {
  public:
-  // Each acts on what the steps before it gave and returns the map, so that steps can be chained.
+  // Each call appends a step and returns the map, so that calls can be chained.
   PointMap& limit_below(double least);  // max(v, least)
   PointMap& limit_above(double most);   // min(v, most)
   PointMap& amplify(double gain);       // gain > 0
@@ -23,13 +22,13 @@ class PointMap {
 
   [[nodiscard]] double operator()(double signal) const;
 
-  // Signals, ascending, between which the map is smooth.
+  // Signals, in ascending order, between which the map is smooth.
   [[nodiscard]] const std::vector<double>& kinks() const { return kinks_; }
 
-  // The stretch before kinks()[index], or after the last.
+  // The interval before kinks()[index], or after the last kink.
   struct Stretch {
     bool level = false;
-    double value = 0.0;  // where level
+    double value = 0.0;  // if level
   };
   [[nodiscard]] const std::vector<Stretch>& stretches() const { return stretches_; }
 
@@ -40,7 +39,7 @@ class PointMap {
     double parameter;
   };
   [[nodiscard]] static double forward(const Step& step, double v);
-  // Kinks of `step` at these inputs of it, traced back to the signal where it gets there.
+  // Maps the kinks of `step`, at the inputs `at`, back to the signal.
   PointMap& append(Step step, const std::vector<double>& at);
 
   std::vector<Step> steps_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Settings of a scene's table into the fields of a struct that has a visit_fields (fields.h). Every
-// failure is a base::Error (Input) with the key's place, what was found, what is allowed.
+// Reads settings of a scene's table into a struct with visit_fields (fields.h). All errors are
+// base::Error (Input) with the key's position, the value found and the allowed values.
 #pragma once
 
 #include <string>
@@ -17,13 +17,13 @@ namespace earthshine::degrade {
 
 using scenes::did_you_mean, scenes::in_quotes;
 
-// As people write it: no trailing zeros, a point whatever the locale.
+// Without trailing zeros; with a decimal point in any locale.
 [[nodiscard]] std::string number(double value);
 
-// The value of a setting, words in quotes.
+// The value of a setting; words are in quotes.
 [[nodiscard]] std::string as_written(const scenes::Setting& setting);
 
-// The place of the key, or of the table when it has no such key.
+// Position of the key, or of the table if it does not have the key.
 [[nodiscard]] const base::Location& place_of(const scenes::SettingTable& table,
                                              std::string_view key);
 
@@ -71,7 +71,8 @@ void read_value(const scenes::Setting& setting, E& field, Limits) {
                     "it must be " + listed(words), did_you_mean(word, words));
 }
 
-// Puts one setting of a `table` into the field of its name; `visit` walks the fields of `target`.
+// Assigns one setting of `table` to the field of its name; `visit` iterates over the fields of
+// `target`.
 template <class Target, class Visit>
 void read_setting(const scenes::Setting& setting, std::string_view table, Target& target,
                   Visit visit, std::vector<std::string> other_keys) {

@@ -21,7 +21,7 @@ TEST(Error, MessageSaysWhereWhatAllowedAndRemedy) {
   EXPECT_STREQ(full.what(), "a.toml:2: gain is 0; it must be at least 1. Leave it out");
   EXPECT_EQ(full.blame(), Blame::Input);
   EXPECT_STREQ(Error(Blame::Work, "", "disk full").what(), "disk full");
-  // Of a binary file the message goes on behind its first NUL.
+  // The message continues after the first NUL of a binary file.
   EXPECT_STREQ(Error(Blame::Input, "a", std::string_view("\"v\0\" is no row", 14)).what(),
                "a: \"v\\x00\" is no row");
 }

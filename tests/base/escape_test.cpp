@@ -24,8 +24,8 @@ TEST(Escape, MarksOfDirectionAndWhatHasNoWidthBecomeVisible) {
 TEST(Escape, BytesThatAreNotUtf8BecomeVisible) {
   EXPECT_EQ(escaped("caf\xe9 \xff"), R"(caf\xe9 \xff)");
   EXPECT_EQ(escaped("\xc0\xaf"), R"(\xc0\xaf)");          // an overlong form
-  EXPECT_EQ(escaped("\xed\xa0\x80"), R"(\xed\xa0\x80)");  // half of a pair
-  EXPECT_EQ(escaped("\xe2\x80"), R"(\xe2\x80)");          // cut off
+  EXPECT_EQ(escaped("\xed\xa0\x80"), R"(\xed\xa0\x80)");  // half of a surrogate pair
+  EXPECT_EQ(escaped("\xe2\x80"), R"(\xe2\x80)");          // truncated
 }
 
 TEST(Escape, OtherTextStaysAsItIs) {

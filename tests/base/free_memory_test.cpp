@@ -48,7 +48,7 @@ TEST_F(FreeMemory, TheFirstVersionOfControlGroupsIsReadToo) {
   write("proc/self/cgroup", "5:cpu,cpuacct:/\n4:memory:/box\n");
   write("sys/fs/cgroup/memory/memory.limit_in_bytes", "90000\n");
   write("sys/fs/cgroup/memory/memory.usage_in_bytes", "100000\n");
-  EXPECT_EQ(found(), 0U);  // over its limit: nothing is left, and not a huge number
+  EXPECT_EQ(found(), 0U);  // above its limit: nothing is free, without overflow to a huge number
 }
 
 TEST(FreeMemoryHere, ThisMachineHasSome) {
@@ -65,7 +65,7 @@ TEST(FreeMemoryHere, ProcessesOfOneCallHaveAnEqualPartEach) {
     EXPECT_EQ(memory_bound(), "allowed by --max-memory for each of 4 ranks on this machine");
   }
   {
-    // What is free of the machine moves meanwhile, though not to five times as much.
+    // The machine's free memory may change meanwhile, but not by a factor of five.
     const MemoryLimit limit(0, 100);
     EXPECT_LT(*free_memory_bytes(), whole / 20);
     EXPECT_EQ(memory_bound(), "free for each of 100 ranks on this machine");

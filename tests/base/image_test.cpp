@@ -16,7 +16,7 @@ TEST(Image, NewChannelsAreZeroAndFoundByTheirName) {
   EXPECT_EQ(image.find("R"), nullptr);
 }
 
-// Rec. 709: the three weights add up to 1, so white of radiance 1 has luminance 1.
+// Rec. 709: the three weights add up to 1, so that white of radiance 1 has luminance 1.
 TEST(Image, LuminanceWeighsRec709PrimariesAndSumsToOne) {
   Image image = make_rgb_image(4, 1);
   for (std::size_t c = 0; c < 3; ++c) {

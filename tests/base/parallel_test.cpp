@@ -29,7 +29,7 @@ TEST(Parallel, ExceptionReachesTheCaller) {
                std::runtime_error);
 }
 
-// Of 1000 chunks those after the tenth are not begun but for the one that each thread has in hand.
+// Of 1000 chunks, at most one per thread starts after the tenth.
 TEST(Parallel, AStopEndsLoopsWhileItIsInForce) {
   std::atomic<int> done{0};
   const auto loop = [&] { parallel_chunks(1000, 1, [&](std::size_t, std::size_t) { ++done; }); };

@@ -11,7 +11,7 @@
 
 namespace earthshine::test {
 
-// One of some ranks that never speak.
+// One of several ranks without communication.
 class Silent : public base::Ranks {
  public:
   Silent(int number, int count) : number_(number), count_(count) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder of its own for each test, gone when the test ends.
+// A separate folder for each test, deleted at its end.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ inline void write_bytes(const std::filesystem::path& path, const std::string& by
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-// The message of the base::Error that `work` must throw, with the blame it must carry.
+// Message of the base::Error that `work` must throw with this blame.
 template <class Work>
 std::string error_of(base::Blame blame, Work work) {
   try {

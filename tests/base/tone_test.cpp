@@ -34,7 +34,7 @@ TEST(Tone, BlackStaysBlack) {
 }
 
 // A flat picture is its own log mean: signal 0.18, below white = 1, where the operator is the
-// identity; sRGB of 0.18 is 1.055 * 0.18^(1/2.4) - 0.055 = 0.4614, times 255 = 117.6.
+// identity. sRGB of 0.18 is 1.055 * 0.18^(1/2.4) - 0.055 = 0.4614, times 255 = 117.6.
 TEST(Tone, FlatPictureIsMiddleGreyAtAnyLuminance) {
   for (const float luminance : {1e-6F, 1.0F, 4.2e4F}) {
     EXPECT_EQ(tone_map(grey_image({luminance, luminance})).rgb, std::vector<std::uint8_t>(6, 118));
@@ -65,7 +65,7 @@ TEST(Tone, PercentileBecomesWhiteAndBrighterIsNeverDarker) {
 TEST(Tone, BrightLampKeepsItsHue) {
   Image image = make_rgb_image(1000, 1);
   for (Channel& channel : image.channels) channel.values.assign(1000, 1.0F);
-  image.channels[0].values[0] = 4e4F;  // far above white, blue nothing, green half of red
+  image.channels[0].values[0] = 4e4F;  // far above white; green is half of red, blue is 0
   image.channels[1].values[0] = 2e4F;
   image.channels[2].values[0] = 0.0F;
   const ToneMapped mapped = tone_map(image);
@@ -100,8 +100,8 @@ TEST(Tone, AnotherPicturesExposureMakesEqualLuminanceEqualGrey) {
   const std::vector<float> scene = ramp();
   const ToneMapped first = tone_map(grey_image(scene));
   EXPECT_EQ(tone_map_with(grey_image(scene), first.report).rgb, first.rgb);
-  // The upper half alone would be exposed for itself; with the exposure of the whole it is that
-  // half.
+  // The upper half alone would get another exposure; with the exposure of the whole it is equal to
+  // this half.
   const std::vector<float> half(scene.begin() + 500, scene.end());
   const ToneMapped shared = tone_map_with(grey_image(half), first.report);
   EXPECT_NE(tone_map(grey_image(half)).rgb, shared.rgb);
@@ -129,7 +129,7 @@ TEST(Tone, SameBytesForOneAndTwoThreads) {
   EXPECT_EQ(a.rgb, tone_map(image).rgb);
 }
 
-// IEC 61966-2-1: 12.92 x up to 0.0031308, then 1.055 x^(1/2.4) - 0.055, times 255 to the nearest.
+// IEC 61966-2-1: 12.92 x up to 0.0031308, then 1.055 x^(1/2.4) - 0.055, times 255, rounded.
 TEST(Srgb, EveryByteBeginsWhereTheCurveRoundsToIt) {
   const auto exact = [](double x) {
     const double v = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
@@ -149,8 +149,8 @@ TEST(Srgb, EveryByteBeginsWhereTheCurveRoundsToIt) {
   EXPECT_EQ(srgb_byte(7.0), 255);
 }
 
-// 1 - 0.4 exp(-(1 - 0.6) / 0.4) = 1 - 0.4 / e = 0.8528 at white, 1 - 0.4 exp(-3.5) = 0.9879 at
-// twice that; straight below 0.6 of it.
+// At white 1 - 0.4 exp(-(1 - 0.6) / 0.4) = 1 - 0.4 / e = 0.8528, at twice white 1 - 0.4 exp(-3.5) =
+// 0.9879; linear below 0.6 of white.
 TEST(Tone, ShoulderIsStraightBelowAndNeverClips) {
   const ToneMapped shown =
       expose(grey_image({1.0F, 3.0F, 5.0F, 10.0F, 20.0F}), 10.0, ToneCurve::Shoulder);
@@ -164,8 +164,8 @@ TEST(Tone, ClippedPictureIsLinearUpToWhite) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(shown.rgb[3 * i], wanted[i]) << i;
 }
 
-// Of 1000 and 1000 pixels together, half of them black: lit ones are numbers 0 to 999 of the ramp,
-// of which the 90th percentile is number 899 (0.9 * 999 = 899.1).
+// Pixels of all pictures together; the black and the faint ones are not lit. The lit ones are
+// numbers 0 to 999 of the ramp, and their 90th percentile is number 899 (0.9 * 999 = 899.1).
 TEST(Tone, WhiteIsThePercentileOfTheLitPixelsOfAllPictures) {
   const std::vector<float> scene = ramp();
   const Image lit = grey_image(scene), dark = grey_image(std::vector<float>(1000, 0.0F)),

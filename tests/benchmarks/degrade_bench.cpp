@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CCTV chain: pixels of the input per second for each camera that ships, for one with every
-// stage on, and for each of its stages alone (pixels that the stage takes in).
+// The CCTV chain: input pixels per second for each shipped camera, for a camera with every stage
+// on, and for each of its stages alone (input pixels of the stage).
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -26,10 +26,10 @@ base::Image noise_picture(int edge_px) {
   return image;
 }
 
-// A monochrome camera with everything that a camera can have.
+// A monochrome camera with every effect on.
 CctvCamera everything() {
   CctvCamera camera = degrade::find_preset("sit-monochrome")->camera;
-  camera.f_number_min = 250.0;  // so that the gain has to help
+  camera.f_number_min = 250.0;  // so that gain is needed
   camera.fall_off = 4.0;
   camera.glare = 0.02;
   camera.lens_blur = 0.3;
@@ -47,7 +47,7 @@ CctvCamera everything() {
   return camera;
 }
 
-// Of `rows` lines, wide enough for a square picture.
+// A monitor with `rows` lines, wide enough for a square picture.
 Monitor monitor_of(int rows) {
   Monitor monitor;
   monitor.rows = rows;
@@ -75,7 +75,7 @@ void chain(benchmark::State& state, const CctvCamera& camera, const Monitor& mon
   set_rate(state, image.pixel_count());
 }
 
-// One stage on the picture that reaches it, on a monitor of as many lines as the picture has.
+// One stage with its usual input, on a monitor with as many lines as the picture.
 void one_stage(benchmark::State& state, const degrade::Stage& stage) {
   const int lines = static_cast<int>(state.range(0));
   const base::Image image = noise_picture(lines);
@@ -124,7 +124,7 @@ int main(int argc, char** argv) {
       ->Arg(512)
       ->Arg(1024)
       ->Arg(2048);
-  // As many lines as the picture has: its cost grows with the picture.
+  // As many lines as the picture, so that the cost grows with the picture.
   add("everything/own-lines",
       [](benchmark::State& state) {
         chain(state, everything(), monitor_of(static_cast<int>(state.range(0))));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each effect costs in the payload bay, switched on alone: the Sun by itself with direct light
-// only is the base, to which each of the others adds one thing. The whole of solve and picture is
-// timed; rays are counted for all of it.
+// Cost of each effect in the payload bay. The base is the Sun alone with direct light only; each
+// other case adds one effect. Times and ray counts are of solve and picture together.
 #include <benchmark/benchmark.h>
 
 #include <functional>
@@ -27,7 +26,7 @@ struct Setting {
   bool per_light = false, cctv = false;
 };
 
-// The bay under a Sun that is a point, without Earth, highlights, mirrors.
+// The bay under a point-like Sun, without Earth, highlights and mirrors.
 scenes::Scene plain_bay() {
   scenes::Scene scene = payload_bay().scene;
   scene.sun = scenes::Sun{glm::normalize(Vec3(0.2, 0.3, 1.0)), Rgb(133100.0), 0.0};
@@ -68,7 +67,7 @@ void lamp(scenes::Scene& scene, scenes::LampKind kind) {
   scene.lamps.push_back(light);
 }
 
-// A panel of a square metre over the bay.
+// An emitting panel of one square metre over the bay.
 void panel(scenes::Scene& scene) {
   scenes::Material shining;
   shining.name = shining.light_group = "panel";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Form factors without rays, on one thread: a cube seen from inside with boxes in it, the cases for
-// which View3D's times are known (1.3, 50 and 47 s on one core of a 2.4 GHz Zen 3).
+// Form factors without rays, on one thread: a cube seen from inside with boxes, the cases for which
+// times of View3D are known (1.3, 50 and 47 s on one core of a 2.4 GHz Zen 3).
 #include <benchmark/benchmark.h>
 
 #include "base/parallel.h"

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What a scene costs when its mesh is finer than its light: the orbiter Atlantis of the Orbiter simulator with its doors
-off, each triangle cut into N x N.
+"""Cost of a mesh that is finer than the light: the orbiter Atlantis without doors, in N x N cuts.
 
 usage: fine_orbiter.py PROGRAM Atlantis.obj [--cuts 1,8,20] [--error E] [--camera out|fwd] [--keep FOLDER] [--truth]
 
-For each N: seconds of `inspect`, and of `render` on one thread, with its patches, peak memory and stated error; loading are
-its stages `read` and `build`. With --truth instead: errors of pictures against two of 1024 paths a pixel, over all pixels
-that show the orbiter and, as a bias, in the dimmest quarter of its blocks of 6 x 6 pixels. The mesh is
-orbitersim/orbiter's Src/Vessel/Atlantis/Atlantis/Meshes/Atlantis.msh (MIT licence), as OBJ.
+The mesh is that of the Orbiter simulator, and each triangle is divided into N x N. For each N:
+seconds of `inspect` and of `render` on one thread, with patches, peak memory and stated error; the
+stages `read` and `build` are loading. With --truth instead: errors of pictures against two
+references of 1024 paths per pixel, over all pixels that show the orbiter, and the bias in the
+dimmest quarter of its blocks of 6 x 6 pixels. The mesh is orbitersim/orbiter's
+Src/Vessel/Atlantis/Atlantis/Meshes/Atlantis.msh (MIT licence), as OBJ.
 """
 import argparse
 import json
@@ -62,7 +63,7 @@ DOORS = ("cargodoor", "radiator")
 
 
 def read(mesh):
-    """(vertices, triangles by group), without the doors of the bay and the radiators on them"""
+    """(vertices, triangles by group), without the bay's doors and their radiators."""
     vertices, groups, group = [], {}, None
     for line in mesh.read_text().splitlines():
         words = line.split()
@@ -77,11 +78,12 @@ def read(mesh):
 
 
 def write_cut(file, vertices, groups, n):
-    """The mesh with each triangle cut into n x n that share their corners; how many there are."""
+    """The mesh with each triangle divided into n x n with shared corners, and the number of
+    triangles."""
     known, count = {}, 0
 
     def vertex(weights):
-        """weights: of the corners, in nths, without those of none."""
+        """weights: of the corners, in units of 1/n; zero weights are omitted."""
         key = tuple(sorted(weights))
         if key not in known:
             known[key] = len(known) + 1
@@ -103,10 +105,10 @@ def write_cut(file, vertices, groups, n):
 
 
 def run(folder, *words):
-    """(standard output, CPU seconds)"""
+    """(standard output, CPU seconds)."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run(list(map(str, words)), cwd=folder, capture_output=True, text=True)
-    if done.returncode not in (0, 3):  # 3: short of the wanted error
+    if done.returncode not in (0, 3):  # 3: wanted error not reached
         sys.exit(f"{' '.join(map(str, words))}: {done.stderr}")
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return done, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
@@ -129,7 +131,7 @@ def measure(folder, call, n, vertices, groups):
 
 
 def dim_pixels(luminances):
-    """Of the blocks that show the orbiter, the dimmest quarter."""
+    """The dimmest quarter of the blocks that show the orbiter."""
     blocks = {}
     for y in range(TRUTH_SIZE[1]):
         for x in range(TRUTH_SIZE[0]):

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays per second of the form-factor kernel (make, trace, count), and of the ray query alone on the
-// very same rays made beforehand. The ratio of two lines of one scene is the share of the kernel's
-// time that tracing takes; of threads:2 to threads:1, how the kernel scales.
+// same, prepared rays. The ratio of both for one scene is the share of tracing in the kernel's
+// time; the ratio of threads:2 to threads:1 is the scaling of the kernel.
 #include <benchmark/benchmark.h>
 
 #include <limits>
@@ -28,7 +28,7 @@ struct Cut {
       : scene(std::move(s)), query(scene), patches(radiosity::subdivide(scene, edge_m)) {}
 };
 
-// A room of 6 n^2 quads around a box of 6 (n/4)^2: every patch is a quad of the ray structure.
+// A room of 6 n^2 quads around a box of 6 (n/4)^2; every patch is one quad of the ray structure.
 scenes::Scene quads(int n) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
@@ -46,7 +46,7 @@ scenes::Scene quads(int n) {
     for (int axis = 0; axis < 3; ++axis) {
       Vec3 a(0.0), b(0.0), across(0.0);
       a[(axis + 1) % 3] = b[(axis + 2) % 3] = across[axis] = size;
-      // a x b points along +axis: inward for the low face.
+      // a x b points along +axis, which is inward for the lower face.
       face(low, inward ? a : b, inward ? b : a, count);
       face(low + across, inward ? b : a, inward ? a : b, count);
     }
@@ -91,7 +91,7 @@ BENCHMARK(kernel)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
-// The same rays of at most 4096 patches spread over the scene.
+// The same rays, of at most 4096 patches from all over the scene.
 void bare_query(benchmark::State& state) {
   const int which = static_cast<int>(state.range(0));
   const Cut& c = cut(which);

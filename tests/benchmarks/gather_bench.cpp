@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays per second of the final gather on a solved payload bay, against the bare query for the very
-// same rays: their ratio is what finding radiance and drawing samples leave of Embree.
+// Rays per second of the final gather on a solved payload bay, and of the ray query alone for the
+// same rays. Their ratio is the overhead of sampling and radiance look-up over Embree.
 #include <benchmark/benchmark.h>
 
 #include "base/parallel.h"
@@ -53,7 +53,7 @@ const Setup& setup() {
   return made;
 }
 
-// One point per pixel, tile by tile, as gather_field casts from.
+// One point per pixel in tiles, as in gather_field.
 std::vector<TilePoints> tiles() {
   const Setup& s = setup();
   std::vector<TilePoints> all;
@@ -100,7 +100,7 @@ BENCHMARK(gather)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
 
-// The packets are made outside the clock.
+// The packets are prepared outside the measurement.
 void bare(benchmark::State& state) {
   const Setup& s = setup();
   const raytrace::GatherRays rays(static_cast<std::uint32_t>(state.range(0)));

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Hard cases asked for an error: what the program says, what is true, and the price beside the path tracer's.
+"""Hard cases with a wanted error: the stated error, the true error, and the path tracer's cost.
 
 usage: hard_cases.py PROGRAM [--error E] [--time-limit S] [--only NAME]
 
-The true error is judged by two runs of the path tracer (tests/validation/error_truth.py). The last column is the message where a
-limit came first.
+The true error is measured with two runs of the path tracer (tests/validation/error_truth.py). The
+last column is the message if a limit came first.
 """
 import argparse
 import json
@@ -22,22 +22,22 @@ import error_truth  # noqa: E402
 import hard_scenes  # noqa: E402
 
 NAMES = ("sun spot", "pinhole", "baffle", "small emitter", "lamp at a wall", "corridor", "lit white room", "room 8")
-# Paths of a reference, per pixel: so many that its own noise stays below the error that is judged.
+# Paths of a reference, per pixel: enough for its noise to be below the measured error.
 PATHS = {"lit white room": 128, "pinhole": 65536, "corridor": 65536, "sun spot": 16384, "room 8": 16384}
 
 
 def scenes():
-    """(name, the scene, what the path tracer is asked)"""
+    """(name, scene, options of the path tracer)."""
     known = {hard.name: (hard.text, hard.traced or hard.text) for hard in hard_scenes.all_of_them()}
     known["room 8"] = (error_scenes.room(8),) * 2
     return [(name, *known[name]) for name in NAMES]
 
 
 def run(folder, program, *words):
-    """(report, standard error, CPU seconds)"""
+    """(report, standard error, CPU seconds)."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run([program, *map(str, words), "--json"], cwd=folder, capture_output=True, text=True)
-    if done.returncode not in (0, 3):  # 3: short of the wanted error
+    if done.returncode not in (0, 3):  # 3: wanted error not reached
         sys.exit(f"{' '.join(map(str, words))}: {done.stderr}")
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return json.loads(done.stdout), done.stderr, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime

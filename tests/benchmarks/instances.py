@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""1000 copies of a part of 9800 triangles (`instance_of`), under a lamp and the Sun: what loading and pictures cost.
+"""Cost of 1000 copies of a part of 9800 triangles (`instance_of`), under a lamp and the Sun.
 
 usage: instances.py PROGRAM [--error E] [--keep FOLDER]
 
-Processor seconds and memory of `inspect`, of `render --indirect none` and of `render --error E`, 256 x 256, on one thread.
+CPU seconds and memory of `inspect`, of `render --indirect none` and of `render --error E`, 256 x
+256, on one thread.
 """
 import argparse
 import math
@@ -48,7 +49,7 @@ resolution = [256, 256]
 
 
 def write_part(path):
-    """A ring that is thicker in five places."""
+    """A ring with five bulges."""
     with open(path, "w") as file:
         for i in range(STEPS):
             for j in range(STEPS):

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Direct light of many lamps at points of a floor: all of them, or those that a LightSampler
+// Direct light of many lamps at points of a floor, from all lamps or from those that a LightSampler
 // chooses.
 //   points   shading points per second, shadow rays included
 //   rays     shadow rays per point
-//   error    root mean square over points of the error of one choice, over the mean illuminance
+//   error    RMS over points of the error of one choice, over the mean illuminance
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -38,7 +38,7 @@ struct Hall {
     return at;
   }
 
-  // Illuminance from the lamps in the list, and shadow rays cast.
+  // Illuminance from the lamps in the list; adds the number of shadow rays to `rays`.
   double shadowed(const scenes::Receiver& at, const std::vector<scenes::LightChoice>& list,
                   double& rays) const {
     scenes::RayPacket packet;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A long hall under many lamps of different strength, with crates that hide some of them.
+// A long hall with many lamps of different intensity and crates that occlude some of them.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,7 @@ inline void add_quad(scenes::Scene& scene, const Vec3& a, const Vec3& b, const V
   scene.triangles.push_back({{v, v + 2, v + 3}, object, 0, object});
 }
 
-// 60 m x 5 m; lamps 4 m above the floor and crates 1 m high on it.
+// 60 m x 5 m, with lamps 4 m above the floor and crates 1 m high.
 inline scenes::Scene hall_of_lamps(std::size_t count) {
   scenes::Scene scene;
   scenes::Material grey;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene that the benchmarks share: the payload bay by day, with few rays so that a run is
-// short.
+// Scene of the benchmarks: the payload bay by day, with few rays for short runs.
 #pragma once
 
 #include "scenes/effects/world.h"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How near `plan` comes: each shipped scene is rendered with --report, which sets what was expected beside
-what was taken. Prints a row per scene, way of light and size: CPU seconds and rays expected over taken, and
-what the pilot took.
+"""Accuracy of `plan` for each shipped scene: `render --report` gives expected and actual cost.
+Prints a row per scene, light transport and size: ratios of expected to actual CPU seconds and rays,
+and the cost of the pilot.
 
 usage: plan_accuracy.py EARTHSHINE [--sizes 64,256] [--indirect radiosity,none] [--scenes cornell,sts46/day]
 """

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The measured tables of docs/scaling.md: `solve` and `render` of one thread a rank on 1 and 2 ranks, and the memory of each rank.
+"""Measures the tables of docs/scaling.md: `solve` and `render` with one thread per rank on 1 and 2
+ranks, and the memory of each rank.
 
 usage: ranks_scaling.py BUILD-FOLDER [solve] [render] [memory] [--repeat N]
 
-Wall seconds are those of an idle machine alone; CPU seconds, of all ranks together, serve on a busy one, too: what ranks spend more than
-one is what they wait (a rank that waits spins) and do twice. Of N runs (3) the fastest counts. All three take a quarter of an hour."""
+Wall seconds are valid only on an idle machine. CPU seconds, over all ranks, are also valid on a
+busy one: the excess over one rank is waiting (a waiting rank spins) and duplicated work. The
+fastest of N runs (3) counts. All three take a quarter of an hour."""
 import argparse
 import json
 import os
@@ -26,7 +28,7 @@ ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_RO
 
 
 def peak_mib(process):
-    """VmHWM, the most that the process has held; nothing once it has ended."""
+    """VmHWM, the peak memory of the process; empty once it has ended."""
     try:
         lines = pathlib.Path(f"/proc/{process}/status").read_text().splitlines()
     except OSError:
@@ -35,7 +37,7 @@ def peak_mib(process):
 
 
 def run(program, ranks, call, file):
-    """Wall and CPU seconds, and the peak of each rank."""
+    """Wall and CPU seconds, and the peak memory of each rank."""
     output = ["-q", "-o", str(file)]
     begun, before = time.monotonic(), os.times()
     process = subprocess.Popen(["mpirun", "-n", str(ranks), program, *call, *output], env=ENVIRONMENT, stdin=subprocess.DEVNULL,

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// What adaptive patches are worth: error of the radiosity against the number of patches, for even
-// cuts and for refinement, against an even cut four times finer than the finest of them.
+// Gain by adaptive patches: error of the radiosity against the number of patches, for uniform
+// division and for refinement. The reference is a uniform division four times finer than the finest
+// one.
 //   refine_bench SCENE.toml REFERENCE_EDGE RAYS EDGE[,EDGE...] START_EDGE BUDGET[,BUDGET...]
-// Without arguments: the Cornell box and the payload bay by Sun. Columns: error of the radiosity as
-// the patches have it, the same as a mean over light groups each relative to its own light, error
-// of the radiosity as gather rays read it (interpolated), what refinement estimated, seconds in
-// all, seconds of them for refinement.
+// Without arguments: the Cornell box and the payload bay by Sun.
 //
-// The error is the root mean square over all surface, relative to that of the radiosity, at the
-// reference's patch centres. The reference is solved with two seeds and the error is the mean
-// product of the two differences, so that the reference's own noise drops out.
+// The first column is the error of the radiosity of the patches. The second is the same as a mean
+// over light groups, each relative to its light. The third is the error of the interpolated
+// radiosity, as gather rays read it. Then follow the estimate of the refinement, seconds in all and
+// seconds of the refinement.
+//
+// The error is the RMS over all surfaces, relative to the RMS of the radiosity, at the patch
+// centres of the reference. The reference is solved with two seeds. The error is the mean product
+// of the two differences, which cancels the noise of the reference.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -33,7 +36,7 @@ struct Call {
   std::vector<double> budgets;
 };
 
-// Where a point given in parameters is on the scene's triangles.
+// Hit on the scene's triangles of a point given by its parameters.
 scenes::Hit hit_of(const radiosity::Facet& facet, const radiosity::Parameters& p, bool front) {
   scenes::Hit hit;
   hit.front = front;
@@ -59,13 +62,13 @@ double luminance_of(const radiosity::Solution& s, std::size_t patch, std::size_t
   return base::luminance({b[0], b[1], b[2]});
 }
 
-// Squares of errors, and of the reference, per light group and of all groups together (last).
+// Squared errors and squared reference, per light group and over all groups (last entry).
 struct Errors {
   std::vector<double> steps, between, all;
   [[nodiscard]] double of(const std::vector<double>& squares, std::size_t group) const {
     return std::sqrt(std::max(0.0, squares[group]) / all[group]);
   }
-  // Mean over the groups, each relative to its own light.
+  // Mean over the groups, each relative to its light.
   [[nodiscard]] double by_group() const {
     double sum = 0.0;
     for (std::size_t g = 0; g + 1 < all.size(); ++g) sum += std::max(0.0, steps[g]) / all[g];
@@ -150,7 +153,7 @@ Measured measure(const Judge& judge, const tests::Prepared& scene, const std::st
   return {static_cast<double>(report.patches), errors.of(errors.steps, all)};
 }
 
-// Patches that the adaptive cuts need for an error: between two of them as a power law.
+// Adaptive patches for an error, by a power law between two measurements.
 double patches_for(const std::vector<Measured>& curve, double error) {
   for (std::size_t k = 1; k < curve.size(); ++k) {
     const Measured &a = curve[k - 1], &b = curve[k];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The product y = F x of the solver against the rate at which the machine reads memory: `matrix` is
-// the bytes of F that pass by per second, once per product for all right-hand sides together.
+// The product y = F x of the solver, against the memory bandwidth of the machine. `matrix` is the
+// bytes of F per second, which are read once per product for all right-hand sides.
 #include <benchmark/benchmark.h>
 
 #include <numeric>
@@ -55,7 +55,7 @@ BENCHMARK(product)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
-// Sums 1 GiB of memory as fast as it comes.
+// Sums 1 GiB of memory at full speed.
 void read_memory(benchmark::State& state) {
   const base::ThreadLimit limit(static_cast<int>(state.range(0)));
   const std::vector<std::uint64_t> data(std::size_t{1} << 27, 1);

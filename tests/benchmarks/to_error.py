@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""CPU seconds to a true error, beside those of the program's own path tracer. Prints a table as Markdown.
+"""CPU seconds to a true error, compared with the program's path tracer. Prints a table as Markdown.
 
     to_error.py PROGRAM [--scene SCENE.toml]... [--camera C]... [--size 256x256] [--errors 0.05,0.02] [--paths 512]
                         [--references 2] [--cache DIR]
 
-Truth: path-traced pictures of independent noise (two, or more for small errors of noisy scenes), of all light paths (error_truth.py), where a pixel's centre shows a
-surface: that is what pictures state their error of, and mean luminances are over it. They are kept in DIR. Their
-difference tells the path tracer's own noise, by the same weights, and with it what it needs for the same error:
-its seconds times (its noise / the error)^2. Its seconds are those of a picture of a sixteenth of the paths, drawn in
-the same run as what it is compared with: references may come from another day or machine.
+Truth: path-traced pictures of independent noise and all light paths (error_truth.py); two, or more
+for small errors of noisy scenes. They are kept in DIR. Errors and mean luminances are over pixels
+whose centre shows a surface, as for stated errors. The difference of the references gives the path
+tracer's noise with the same weights. Its time for the same error is its seconds times (its noise /
+the error)^2. Its seconds are measured with a sixteenth of the paths in the same run as the compared
+picture, because references may be from another day or machine.
 """
 import argparse
 import json
@@ -24,15 +25,15 @@ import error_truth  # noqa: E402
 
 SCENES = [TOP / "scenes/library/sts46" / f"{name}.toml" for name in ("night-lamps", "day-sun", "day-earthshine")]
 FIRST_SEED = 11  # of the references
-TIMED = 16  # of so many paths one, for the path tracer's seconds
+TIMED = 16  # the path tracer is timed with this fraction of its paths, 1/TIMED
 
 
 def run(*words):
-    """(standard output, CPU seconds)"""
+    """(standard output, CPU seconds)."""
     process = subprocess.Popen(list(map(str, words)), stdout=subprocess.PIPE, text=True)
     out = process.stdout.read()
     _, status, used = os.wait4(process.pid, 0)
-    if os.waitstatus_to_exitcode(status) not in (0, 3):  # 3: short of the wanted error
+    if os.waitstatus_to_exitcode(status) not in (0, 3):  # 3: wanted error not reached
         raise SystemExit(f"to_error: {' '.join(map(str, words))} ended with status {status}")
     return out, used.ru_utime + used.ru_stime
 
@@ -44,7 +45,7 @@ def trace_paths(call, scene, camera, paths, seed, picture):
 
 
 def shows_surface(call, scene, camera):
-    """Of every pixel: 1 if its centre shows a surface, 0 if it shows the sky."""
+    """Per pixel: 1 if its centre shows a surface, 0 if it shows the sky."""
     picture = call.cache / f"{scene.stem}-{camera}-{call.size}-objects.exr"
     if not picture.exists():
         run(call.program, "render", scene, "--camera", camera, "--size", call.size,
@@ -53,7 +54,7 @@ def shows_surface(call, scene, camera):
 
 
 def references(call, scene, camera):
-    """Luminances of each."""
+    """Luminances of each reference."""
     found = []
     for seed in range(FIRST_SEED, FIRST_SEED + call.references):
         picture = call.cache / f"{scene.stem}-{camera}-{call.size}-{call.paths}-{seed}.exr"
@@ -66,7 +67,7 @@ def references(call, scene, camera):
 
 
 def noise(first, second, counts):
-    """Of one of the two, relative to their mean, with the weights of compare()."""
+    """Noise of one of the two, relative to their mean, with the weights of compare()."""
     pairs = [(a, b) for a, b, c in zip(first, second, counts) if c]
     mean = sum(map(sum, pairs)) / (2 * len(pairs))
     square = sum((error_truth.weight((a + b) / 2, mean) * (a - b))**2 for a, b in pairs) / (2 * len(pairs))

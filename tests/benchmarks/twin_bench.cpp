@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixels of the sensor per second through each step of the analytic twin, and through all of them
-// for one plane of a tube camera: grain of blur and bandwidth, clamp and gamma, screen, spread onto
-// 3 x 3 pixels, detection. The picture is 400 x 300 resels, half of it near black.
+// Sensor pixels per second of each step of the analytic twin, and of all steps for one plane of a
+// tube camera. The steps are grain of blur and bandwidth, clamp and gamma, screen, spread onto
+// 3 x 3 pixels, and detection. The picture is 400 x 300 resels, half of it near black.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ Covariance grain() {
   return filtered(all, gaussian_blur(columns, std::sqrt(0.3)), gaussian_blur(rows, 0.0));
 }
 
-// Camera and monitor in one map: what the eye gets of a signal.
+// Camera and monitor in one map: luminance of the screen for a signal.
 PointMap camera_and_screen(int bits) {
   PointMap map;
   map.limit_below(0.0).limit_above(1.1).power(1.0 / 2.2);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cameras that cannot make a picture are refused with their place; pixel filters."""
+"""Invalid cameras are refused with their position; pixel filters."""
 import unittest
 
 import exr
@@ -24,7 +24,7 @@ class Cameras(program.Case):
     def test_look_at_is_the_position(self):
         where = f"scene.toml:{CAMERA_LINE + 1}:1"
         self.broken("look_at = [2, 2, 1.5]", "look_at = [0.4, 0.5, 0.6]", where, "own position")
-        # A thousandth of a millimetre at 100 km is made of rounding.
+        # A thousandth of a millimetre at 100 km is pure rounding.
         self.broken("position = [0.4, 0.5, 0.6]\nlook_at = [2, 2, 1.5]",
                     "position = [100000, 0, 0]\nlook_at = [100000.000001, 0, 0]", where, "own position")
 
@@ -79,7 +79,7 @@ class Filters(program.Case):
             self.assertEqual(header["earthshine:camera.filter"], name)
             self.assertAlmostEqual(header["earthshine:camera.filter_width_px"], width)
             self.assertNotEqual(other["G"], box["G"])
-            # The light of the whole picture stays.
+            # The light of the whole picture is unchanged.
             self.assertAlmostEqual(sum(other["G"]) / sum(box["G"]), 1, delta=0.05)
 
     def test_broken_filters(self):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""degrade --cctv and --describe: cameras that ship, of camera files, of scenes."""
+"""degrade --cctv and --describe: shipped cameras, and cameras of camera files and scenes."""
 import unittest
 
 import program
@@ -36,7 +36,7 @@ class CctvCamera(program.Case):
         self.assertEqual((report["camera"], report["sensor"][1]), ("quiet", 240))
         self.assertAlmostEqual(report["noise"]["a"], 1e-4)
         self.assertEqual(run("--cctv", "sit-monochrome"), run("--preset", "sit-monochrome"))
-        # The only camera of a file, and the preset it starts from with that preset's monitor.
+        # The only camera of a file, and its preset with the preset's monitor.
         only, _ = run("--cctv", "one.toml")
         preset, _ = run("--preset", "report-1990")
         self.assertEqual((only.pop("camera"), preset.pop("camera")), ("only", "report-1990"))
@@ -63,7 +63,7 @@ class CctvCamera(program.Case):
         self.assertEqual([form["settings"]["noise"] for form in quiet["other_forms"]], ["law", "report"])
 
     def test_forms_that_are_printed_can_be_given(self):
-        """Each exact form, put into a file, has the law that it was printed for."""
+        """Each exact form, written to a file, gives the law for which it was printed."""
         for name in ("report-1990", "sit-monochrome", "sit-colour-wheel", "ccd-colour"):
             noise = self.json("degrade", "--describe", name)["noise"]
             for form in noise["other_forms"]:
@@ -96,7 +96,7 @@ class CctvCamera(program.Case):
         says(self.write("slip.toml", '[[cctv]]\nname = "a"\n[[camera]]\n'), "slip.toml:3:", "monitor")
         says(self.write("two.toml", '[[cctv]]\nname = "a"\nnoise = "law"\nnoise_a = 0.1\nsnr_db = 3\n'),
              "two.toml:5:1", '"snr_db" stands beside "noise_a"')
-        # A slip in another camera of the file is told too.
+        # An error in another camera of the file is reported too.
         says(self.write("bad.toml", CAMERAS.replace("glare", "glair")) + ":quiet", "bad.toml:4:1", "glare")
         for beside in (("--preset", "ideal"), ("--scene", "ball.toml")):
             message = self.refused("degrade", "a.exr", "-o", "c.png", "--cctv", "ideal", *beside)

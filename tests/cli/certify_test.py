@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""degrade certify: a camera's datasheet, each number beside its law."""
+"""degrade certify: a camera's datasheet, each number with its law."""
 import json
 import unittest
 

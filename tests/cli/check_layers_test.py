@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The layer check finds each fault that is planted for it, and nothing in a clean tree."""
+"""The layer check finds each planted error, and none in a clean tree."""
 import pathlib
 import subprocess
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""degrade on EXR files of every kind: an answer, or one clear error."""
+"""degrade on EXR files of all kinds: a result, or one clear error."""
 import json
 import math
 import struct
@@ -9,7 +9,7 @@ import unittest
 import exr
 import program
 
-# CIE XYZ as primaries: what programs write that put X, Y and Z into R, G and B.
+# CIE XYZ as primaries, as in programs that write X, Y and Z to R, G and B.
 XYZ = struct.pack("<8f", 1, 0, 0, 1, 0, 0, 1 / 3, 1 / 3)
 
 
@@ -29,7 +29,8 @@ class DegradeInputs(program.Case):
         return self.answer(exr.pack(*arguments, **more))["metered_cd_m2"]
 
     def test_channels_by_other_names(self):
-        """Grey of 7 cd/m2 is 7 cd/m2 by any name, and a colour has the luminance of Rec. 709."""
+        """Grey of 7 cd/m2 is 7 cd/m2 under any channel name, and a colour has its Rec. 709
+        luminance."""
         green = 0.7152 * 5
         for channels, wanted in (({"Y": 7}, 7), ({"luminance": 7}, 7), ({"L": 7}, 7), ({"beauty.Y": 7}, 7),
                                  ({"R": 0, "G": 5, "B": 0}, green), ({"r": 0, "g": 5, "b": 0}, green),
@@ -41,11 +42,11 @@ class DegradeInputs(program.Case):
             self.assertAlmostEqual(self.metered(8, 6, channels), wanted, delta=wanted * 1e-4, msg=channels)
 
     def test_alpha_is_in_the_colour_already(self):
-        """OpenEXR's colours are premultiplied: a pixel of half coverage already has half the light."""
+        """OpenEXR's colours are premultiplied: a pixel of half coverage has half the light."""
         self.assertAlmostEqual(self.metered(8, 6, {"R": 2, "G": 2, "B": 2, "A": 0.25}), 2, delta=1e-4)
 
     def test_other_primaries(self):
-        """Of light stored as X, Y, Z in R, G, B the second number is the luminance."""
+        """If R, G, B contain X, Y, Z, the second one is the luminance."""
         chromaticities = [("chromaticities", "chromaticities", XYZ)]
         value = self.metered(8, 6, {"R": 4, "G": 7, "B": 2}, more=chromaticities)
         self.assertAlmostEqual(value, 7, delta=1e-3)
@@ -57,7 +58,7 @@ class DegradeInputs(program.Case):
         self.assertAlmostEqual(self.metered(5, 4, {"Y": 0.5}, more=white), 125, delta=1e-2)
 
     def test_windows(self):
-        """The picture is what the data window has of the display window; overscan on any side is not metered."""
+        """The picture is the intersection of data and display window; overscan is not metered."""
         for corner in ((-70, 5), (0, 0), (12, -300)):
             self.assertAlmostEqual(self.metered(5, 4, {"Y": 3}, corner=corner), 3, delta=1e-4)
         frame = [9 if x in (0, 7) or y in (0, 5) else 2 for y in range(6) for x in range(8)]
@@ -65,7 +66,8 @@ class DegradeInputs(program.Case):
         self.assertAlmostEqual(report["metered_cd_m2"], 2, delta=1e-4)
         self.assertEqual((report["picture"]["columns"], report["picture"]["rows"]), (6, 4))
         self.assertNotIn("crop_of", report["picture"])
-        # 2 cd/m2 in the display window (0, 0) to (9, 5), 90 in the overscan; x0, x1, y0, y1 of the data window.
+        # 2 cd/m2 in the display window (0, 0) to (9, 5), 90 in the overscan; x0, x1, y0, y1 of the
+        # data window.
         for x0, x1, y0, y1 in ((-4, 13, 0, 5), (0, 9, -3, 8), (-1, 9, 0, 5), (-4, 13, -3, 4), (-4, 5, 0, 5), (3, 20, 2, 9)):
             light = [2 if 0 <= x <= 9 and 0 <= y <= 5 else 90 for y in range(y0, y1 + 1) for x in range(x0, x1 + 1)]
             data = exr.pack(x1 - x0 + 1, y1 - y0 + 1, {"Y": light}, corner=(x0, y0), display=(0, 0, 9, 5))
@@ -100,12 +102,14 @@ class DegradeInputs(program.Case):
             self.assertAlmostEqual(report["metered_cd_m2"], 3, delta=1e-4)
 
     def test_a_large_picture_is_read_in_strips(self):
-        """20 000 x 20 000 is 1.6 GB a channel; averaged while it is read it takes little. Here 20 000 x 900."""
+        """20 000 x 20 000 is 1.6 GB per channel, but needs little memory if averaged while it is
+        read. Here 20 000 x 900."""
         ramp = [float(x) for x in range(20000)] * 900
         report = self.answer(exr.pack(20000, 900, {"Y": ramp}, kind="half"))
         self.assertTrue(report["picture"]["read_in_strips"])
         self.assertEqual(report["sensor"], [400, 18])
-        # The peak iris meters the 99.5 % quantile of the averages: of 400 columns of 50 the third from the right.
+        # The peak iris meters the 99.5 % quantile of the averages: of 400 columns of 50, the third
+        # from the right.
         self.assertAlmostEqual(report["metered_cd_m2"], 20000 - 2.5 * 50, delta=60)
 
     def test_claims_without_pixels_are_refused_at_once(self):

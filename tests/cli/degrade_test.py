@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""degrade: the CCTV stage on pictures that render wrote."""
+"""degrade: the CCTV stage for pictures by render."""
 import math
 import unittest
 
@@ -7,7 +7,7 @@ import exr
 import program
 from tiny_bay import SMALL_MONITOR
 
-# What most of these cases take is the monitor's.
+# The monitor takes most of the time in these cases.
 SMALL = '[[cctv]]\nname = "small"\npreset = "sit-monochrome"\n\n' + SMALL_MONITOR
 
 
@@ -22,7 +22,7 @@ class Degrade(program.Case):
 
     def test_alone_is_the_same_as_within_render(self):
         self.done("render", "ball.toml", "-o", "a.exr", "--camera", "above", "--cctv", "whole.png", "--seed", 4)
-        # The picture's header names the camera.
+        # The header of the picture names the camera.
         self.done("degrade", "a.exr", "-o", "alone.png", "--scene", "ball.toml", "--seed", 4)
         self.assertEqual(self.picture("whole.png"), self.picture("alone.png"))
         self.done("degrade", "a.exr", "-o", "other.png", "--scene", "ball.toml", "--camera", "A", "--seed", 4)
@@ -63,7 +63,7 @@ class Degrade(program.Case):
         self.assertEqual([frame["frame"] for frame in report["frames"]], [8, 9, 10])
         frames = [self.picture(f"f-{number:02}.png") for number in (8, 9, 10)]
         self.assertEqual(len(set(frames)), 3)
-        # The same sequence again, frame by frame the same bytes.
+        # The same sequence frame by frame gives the same bytes.
         self.done("degrade", "a.exr", "-o", "g-#.png", "--cctv", "small.toml", "--frames", 3, "--frame", 8)
         self.assertEqual(frames, [self.picture(f"g-{number}.png") for number in (8, 9, 10)])
 
@@ -116,7 +116,8 @@ class Degrade(program.Case):
         for wrong in (["--twin", "t.png"], ["--twin", "t.exr", "--target-resels", 4], ["--twin", "noisy.exr"]):
             self.refused("degrade", "a.exr", "-o", "noisy.exr", *wrong)
 
-    # Light adds: what the camera shows of the sum of the lights' layers is what it shows of the picture.
+    # Light is additive: the camera's picture of the sum of the light layers is its picture of the
+    # scene.
     def test_lights_may_be_mixed_before_the_camera_sees_them(self):
         self.done("render", "ball.toml", "-o", "a.exr", "--per-light")
         header, width, height, channels = exr.read(self.folder / "a.exr")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An effect that does not run casts no rays and changes no byte; one that runs is counted as what it is."""
+"""An effect that is off casts no rays and changes no byte; the report lists each active effect."""
 import unittest
 
 import exr
@@ -28,8 +28,8 @@ material = "sheet"
 BALL = program.BALL
 PLAIN = BALL.replace("specular = 0.3\nshininess = 20\n", "")
 
-# Scenes with nothing to do for an effect: what the scene has more, put before everything else so
-# that numbers of lamps and materials shift, and what the call sets.
+# Scenes in which an effect has nothing to do: additional text for the scene, placed first so that
+# numbers of lamps and materials shift, and options of the call.
 IDLE = {
     "a material that nothing wears, with everything": (UNUSED + "diffuse = 0.1\nspecular = 0.1\nshininess = 5\nmirror = 0.2\ntransmit = 0.2\nior = 1.5\nemit = 4\n", []),
     "emit 0": ("", ["--set", "material.floor.emit=0"]),
@@ -43,7 +43,7 @@ IDLE = {
     "ambient 0": ("[ambient]\nradiance = 0\n", []),
 } | {f"a dark lamp of the {kind}": (lamp, []) for kind, lamp in DARK_LAMPS.items()}
 
-# A floor under the Sun alone: nothing is in front of anything.
+# A floor under the Sun only: no surface faces another.
 FLOOR = PLAIN.replace(PLAIN[PLAIN.index('[[object]]\nname = "ball"'):PLAIN.index("[[light]]")], "").replace(
     PLAIN[PLAIN.index("[[light]]"):PLAIN.index("[sun]")], "")
 SPOT = DARK_LAMP.format("spot", "position = [0, 0, 1]\naim = [0, 0, {}]\nintensity = 100\nbeam_deg = 20\nfield_deg = {}")
@@ -51,7 +51,7 @@ FLAT = DARK_LAMP.format("rectangle", "center = [0, 0, 1]\nedge_u = [1, 0, 0]\ned
 BELOW = EARTH.replace("[0, -0.8, 0.6]", "[0, 0, -1]")
 FACING = "diffuse = 0.5\n[[object]]\nname = \"lid\"\nshape = \"quad\"\ncorners = [[-1, -1, 3], [-1, 1, 3], [1, 1, 3], [1, -1, 3]]\nmaterial = \"lid\"\n"
 LID = '[[material]]\nname = "lid"\n' + FACING
-# More than the floor has, the row, whether it is found not to matter, and what it says.
+# Additions to the floor, the row, whether the effect is found to be irrelevant, and the reason.
 MATTERS = [
     ("", [], "interreflection", True, "no surface is in front of another"),
     (LID, [], "interreflection", False, ""),
@@ -63,16 +63,18 @@ MATTERS = [
     (BELOW.format(60, 100), ["--set", "material.floor.two_sided=true"], "earth", False, ""),
     (EARTH.format(60, 100), [], "earth", False, ""),
     ("", ["--set", "sun.direction=[0.1, 0, -1]"], "sun", True, "below the horizon"),
-    ("", ["--set", "sun.direction=[1, 0, -0.001]"], "sun", False, ""),  # half its disc is up
+    ("", ["--set", "sun.direction=[1, 0, -0.001]"], "sun", False, ""),  # half of its disc is above
+                                                                        # the horizon
     (SPOT.format(5, 40), [], "spot lamps", True, "in reach of lamp \"dark\""),
     (SPOT.format(5, 179), [], "spot lamps", True, "in reach"),
     (SPOT.format(0, 40), [], "spot lamps", False, ""),
     (FLAT.format(1), ["--camera", "A", "--set", "camera.A.position=[3, -3, 0.5]"], "rectangle lamps", True, "in reach"),
-    (FLAT.format(1), ["--camera", "A"], "rectangle lamps", False, ""),  # the camera looks down on it
+    (FLAT.format(1), ["--camera", "A"], "rectangle lamps", False, ""),  # the camera sees its front
+                                                                        # from above
     (FLAT.format(-1), ["--camera", "A", "--set", "camera.A.position=[3, -3, 0.5]"], "rectangle lamps", False, ""),
 ]
 
-# A box from corner to corner, seen from inside, with a lamp in it.
+# A closed box around a lamp, seen from inside.
 QUAD = '[[object]]\nname = "{}"\nshape = "quad"\ncorners = {}\nmaterial = "{}"\n'
 CORNERS = {"x0": [[0, 0, 0], [0, 1, 0], [0, 1, 1], [0, 0, 1]], "x1": [[1, 0, 0], [1, 0, 1], [1, 1, 1], [1, 1, 0]],
            "y0": [[0, 0, 0], [0, 0, 1], [1, 0, 1], [1, 0, 0]], "y1": [[0, 1, 0], [1, 1, 0], [1, 1, 1], [0, 1, 1]],
@@ -83,14 +85,14 @@ SHUT_IN = ('[[material]]\nname = "wall"\ndiffuse = 0.5\n[[material]]\nname = "li
            + "".join(QUAD.format(face, corners, "wall") for face, corners in PLACED.items() if face != "z1") + "CUT"
            + '[[light]]\nname = "in"\ntype = "point"\nposition = [0, 0, 0.4]\nintensity = 100\n')
 LID_ON = QUAD.format("z1", PLACED["z1"], "lid")
-# What the lid has more, the lid, and whether the lamp is found not to matter.
+# Additional keys of the lid, the lid, and whether the lamp is found to be irrelevant.
 SHUT = {"shut": ("", LID_ON, True), "a lid a millimetre short": ("", QUAD.format("z1", SHORT, "lid"), False),
         "no lid": ("", "", False), "a lid of glass": ("transmit = 0.5\nior = 1.5", LID_ON, False),
         "a lid that mirrors": ("mirror = 0.5", LID_ON, False), "a lid of two sides": ("two_sided = true", LID_ON, False)}
 
 
 def with_more(scene, more):
-    """After the head, before the scene's own tables."""
+    """Inserts text after the head, before the scene's tables."""
     at = scene.index("[[material]]")
     return scene[:at] + more + scene[at:]
 
@@ -102,7 +104,7 @@ class Effects(program.Case):
         return exr.read(self.folder / "a.exr"), report
 
     def same(self, picture, other):
-        """The channels, bit for bit."""
+        """The channels are bitwise equal."""
         first, second = ({name: values.tobytes() for name, values in p[3].items()} for p in (picture, other))
         self.assertEqual(first, second)
 
@@ -176,7 +178,8 @@ class Effects(program.Case):
 
     def test_report_sets_what_was_expected_beside_what_was_taken(self):
         self.write("scene.toml", BALL)
-        # A second and more of work, so that what is in no row is little on a busy machine too.
+        # A second of work or more, so that time outside all rows is a small share, also on a busy
+        # machine.
         size = [more for name in ("A", "above") for more in ("--set", f"camera.{name}.resolution=[192,144]")]
         said = self.json("render", "scene.toml", "-o", "a.exr", "--report", "r.json", "--camera", "A,above", "-q", *size)
         report = program.json.loads((self.folder / "r.json").read_text())
@@ -196,10 +199,11 @@ class Effects(program.Case):
         cast = sum(s["rays"][kind] for s in said for kind in pictures)
         cast += said[0]["rays"]["form_factors"] + said[0]["rays"]["direct"]
         self.assertEqual(sum(row["taken"]["rays"] for row in rows.values()), cast)
-        # So is every second, but for what the direct light does between its sources.
+        # Every second too, except the time of direct light between its sources.
         total = report["taken"]["seconds"]
         self.assertAlmostEqual(sum(row["taken"]["seconds"] for row in rows.values()), total, delta=0.05 * total)
-        # Even patches: the counts follow from the sizes; camera samples are a guess within a factor.
+        # Uniform patches: counts follow from the sizes; the number of camera samples is a rough
+        # estimate.
         self.assertEqual(report["expected"]["patches"], report["taken"]["patches"])
         for name in ("interreflection", "sun", "point lamps", "camera rays", "glossy reflection"):
             ratio = rows[name]["expected"]["rays"] / rows[name]["taken"]["rays"]
@@ -236,7 +240,7 @@ class Effects(program.Case):
         self.assertNotIn("direct_by", said["rays"])
 
     def test_lights_behind_closed_walls_are_found_and_those_behind_leaking_ones_are_not(self):
-        """A lamp in a box on the floor; a lid that is short, of glass or missing keeps it on."""
+        """A lamp in a box on the floor. It is relevant if the lid is short, of glass or missing."""
         for name, (wall, cut, found) in SHUT.items():
             with self.subTest(name=name):
                 scene = with_more(FLOOR, SHUT_IN.format(wall)).replace("CUT", cut)
@@ -246,7 +250,7 @@ class Effects(program.Case):
                 self.assertEqual("closed walls" in rows["point lamps"]["why"], found)
                 if not found:
                     continue
-                # Without the lamp's light: straight light, so that patches play no part.
+                # Direct light only, so that patches have no effect.
                 skipped, cost = self.render(scene, "--indirect", "none")
                 whole, price = self.render(scene, "--indirect", "none", "--all-effects")
                 self.assertEqual(cost["rays"]["shadow_by"]["point lamps"], 0)
@@ -260,7 +264,8 @@ class Effects(program.Case):
                     self.assertIn("cannot matter", rows[effect]["why"])
 
     def test_lights_on_an_area_do_not_set_with_the_earth(self):
-        # The disc's upper edge is 3 degrees below the floor's horizon; the area on its side stands above the floor.
+        # The disc's upper edge is 3 degrees below the floor's horizon; the area on its side is
+        # above the floor.
         area = '[[area]]\nname = "sky"\ncenter = [3, 0, 1]\nedge_u = [0, 0, 1]\nedge_v = [0, 1, 0]\n'
         earth = BELOW.format(3, 100).replace("direction = [0, 0, -1]", "direction = [1, 0, -0.1051]")
         self.assertIn("-0.1051", earth)
@@ -279,7 +284,8 @@ class Effects(program.Case):
                     a, b = skipped[3][channel], whole[3][channel]
                     self.assertAlmostEqual(sum(a) / sum(b), 1, delta=0.01)
                     lit = max(b)
-                    self.assertLess(max(abs(x - y) for x, y in zip(a, b)), 0.25 * lit)  # edges alone
+                    self.assertLess(max(abs(x - y) for x, y in zip(a, b)), 0.25 * lit)  # only at
+                                                                                        # edges
                 rays, paid = cost["rays"], price["rays"]
                 self.assertEqual((rays["form_factors"], rays["gather"]), (0, 0))
                 self.assertGreater(paid["form_factors"], 0)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The harness that judges stated errors (tests/validation/error_bounds.py): does it find a known error?"""
+"""Tests that the validation of stated errors (tests/validation/error_bounds.py) finds a known
+error."""
 import math
 import pathlib
 import random
@@ -21,7 +22,8 @@ def noisy(values, sigma, seed):
 
 class Truth(unittest.TestCase):
     def test_the_references_noise_drops_out(self):
-        # L = R + 0.05: the products' mean is 0.05^2, their variance sigma^4 + 2 0.05^2 sigma^2.
+        # L = R + 0.05: the mean of the products is 0.05^2, their variance sigma^4 + 2 0.05^2
+        # sigma^2.
         number, sigma, off = 40000, 0.1, 0.05
         truth = [1.0] * number
         found = error_truth.compare([v + off for v in truth], noisy(truth, sigma, 1), noisy(truth, sigma, 2))
@@ -32,7 +34,8 @@ class Truth(unittest.TestCase):
         self.assertAlmostEqual(found.bias, off, delta=4 * sigma / math.sqrt(2 * number))
 
     def test_more_references_tell_it_better(self):
-        # Of k, the mean over all pairs of (off + e)(off + e') has the variance 4 off^2 sigma^2 / k + 2 sigma^4 / (k (k - 1)).
+        # For k references, the mean over all pairs of (off + e)(off + e') has the variance 4 off^2
+        # sigma^2 / k + 2 sigma^4 / (k (k - 1)).
         number, sigma, off, k = 10000, 0.1, 0.05, 6
         first, second, *more = (noisy([1.0] * number, sigma, seed) for seed in range(k))
         found = error_truth.compare([1.0 + off] * number, first, second, None, more)
@@ -42,8 +45,9 @@ class Truth(unittest.TestCase):
         self.assertAlmostEqual(found.of_references, spread, delta=0.05 * spread)
 
     def test_what_pixels_differ_by_is_no_doubt_of_these(self):
-        # A tenth of the pixels is off, by o: as a sample the squares' mean scatters by o^2 sqrt(0.09 / N) beside the references'
-        # noise, whose variance is 4 (o^2 / 10) s^2 / k + 2 s^4 / (k (k - 1)).
+        # A tenth of the pixels has the error o. As a sample, the mean square has the standard
+        # deviation o^2 sqrt(0.09 / N), in addition to the references' noise of variance 4 (o^2 /
+        # 10) s^2 / k + 2 s^4 / (k (k - 1)).
         number, sigma, off, k = 10000, 0.1, 0.5, 4
         light = [1.0 + off * (p % 10 == 0) for p in range(number)]
         first, second, *more = (noisy([1.0] * number, sigma, seed) for seed in range(k))
@@ -54,7 +58,8 @@ class Truth(unittest.TestCase):
         self.assertLess(abs(found.error**2 - off**2 / 10), 4 * spread)
 
     def test_an_outlier_is_no_certainty(self):
-        # One of four references is off by d in one of 100 pixels: s^2 = d^2 / 4, and 2 s^4 / (4 * 5) is the least that is unknown.
+        # One of four references differs by d in one of 100 pixels: s^2 = d^2 / 4, and 2 s^4 / (4 *
+        # 5) is the smallest uncertainty.
         truth, d = [1.0] * 100, 0.4
         found = error_truth.compare(truth, [1.0 + d, *truth[1:]], truth, None, [truth, truth])
         mean = 1.0 + d / 400
@@ -65,7 +70,8 @@ class Truth(unittest.TestCase):
         self.assertEqual((found.error, found.bias, found.mean), (0.5, 0.5, 2.0))
 
     def test_bright_pixels_count_in_proportion(self):
-        # Mean (16 * 1 + 48) / 17 = 64 / 17, so that 48 counts with w = 4 (64 / 17) / 48 = 16 / 51: one of 17 squares is (8 w)^2.
+        # Mean (16 * 1 + 48) / 17 = 64 / 17, so that 48 has the weight w = 4 (64 / 17) / 48 = 16 /
+        # 51: one of 17 squares is (8 w)^2.
         truth = [1.0] * 16 + [48.0]
         found = error_truth.compare(truth[:-1] + [56.0], truth, truth)
         mean, w = 64 / 17, 16 / 51
@@ -74,7 +80,7 @@ class Truth(unittest.TestCase):
 
     def test_pixels_about_a_source(self):
         seen = [0] * 12
-        seen[0] = seen[11] = 1  # of 4 x 3: a corner and the one across
+        seen[0] = seen[11] = 1  # of 4 x 3: opposite corners
         self.assertEqual([int(near) for near in error_bounds.with_neighbours(seen, 4)], [1, 1, 0, 0, 1, 1, 1, 1, 0, 0, 1, 1])
 
     def test_what_is_asked_for_as_overrides(self):
@@ -82,7 +88,8 @@ class Truth(unittest.TestCase):
                          ["quality.error=0.05", "quality.gather_rays=8"])
 
     def test_every_room_is_the_same_everywhere(self):
-        # Scenes are part of the published table: they must not move with a Python's random module.
+        # The scenes are part of the published table: they must not depend on Python's random
+        # module.
         self.assertEqual(error_bounds.hash_of(*(error_scenes.room(n) for n in range(error_scenes.ROOMS)))[:16], ROOMS)
 
 
@@ -96,7 +103,7 @@ class Harness(program.Case):
         self.bench = error_bounds.Bench(pathlib.Path(program.PROGRAM), self.folder, self.folder / "cache", 1)
 
     def test_radiosities_of_solutions(self):
-        # With M = 10 on every wall, rho 0.5 on all: B = 20 at each of the points, on patches of whatever size.
+        # With M = 10 and rho 0.5 on every wall, B = 20 at each point for patches of any size.
         self.write("box.toml", program.CLOSED_BOX)
         solutions = []
         for name, edge in (("a.h5", 0.5), ("b.h5", 0.21)):
@@ -106,13 +113,13 @@ class Harness(program.Case):
         found = error_truth.radiosities(self.bench.reader, self.folder / "box.toml", solutions, points=500)
         self.assertEqual([len(column) for column in found], [500, 500])
         self.assertLess(max(abs(value - 20) for column in found for value in column), 1e-4)
-        # One that shines brighter by 10 % everywhere.
+        # A solution that is 10 % brighter everywhere.
         brighter = ["--seed", "3", "--set", "quality.patch_edge=0.5", "--set", "material.wall.emit=11"]
         self.bench.json("solve", "box.toml", "-o", "c.h5", *brighter)
         solutions[0] = [self.folder / "c.h5", 3, "quality.patch_edge=0.5", "material.wall.emit=11"]
         first, second = error_truth.radiosities(self.bench.reader, self.folder / "box.toml", solutions, points=500)
         self.assertAlmostEqual(error_truth.compare(first, second, second).error, 0.1, places=5)
-        # One found by other settings is refused.
+        # A solution with other settings is refused.
         with self.assertRaises(RuntimeError):
             error_truth.radiosities(self.bench.reader, self.folder / "box.toml", [[self.folder / "a.h5", 4, "quality.patch_edge=0.5"]])
 
@@ -148,9 +155,10 @@ material = "panel"
         self.assertEqual([path.stat().st_mtime_ns for path in (self.folder / "cache").glob("*/*")], stamp)
 
     def test_references_are_drawn_until_they_tell(self):
-        # A picture off by 0.01, references of the deviation 0.3: of k the square, 1e-4, is off by
-        # sqrt((4e-4 0.09 / k + 2 0.0081 / (k (k - 1))) / N), which must be a tenth of a bound of 0.02 of it or less, 2 0.01 0.002:
-        # with N = 10 000 that is 1.6e-4 of 8, 7.5e-5 of 16 and 3.7e-5 of 32, the first that is less than 4e-5.
+        # A picture with the error 0.01, references with the deviation 0.3. With k references the
+        # square, 1e-4, has the standard error sqrt((4e-4 0.09 / k + 2 0.0081 / (k (k - 1))) / N).
+        # It must be at most a tenth of 2 0.01 0.002, for a bound of 0.02. With N = 10 000 it is
+        # 1.6e-4 for 8, 7.5e-5 for 16 and 3.7e-5 for 32, the first one below 4e-5.
         number, sigma = 10000, 0.3
         asked = []
 

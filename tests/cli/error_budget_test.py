@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The error budget that render and solve state: JSON, EXR header, what is not captured."""
+"""The error budget of render and solve: JSON, EXR header, effects that are not captured."""
 import json
 import math
 import unittest
@@ -25,7 +25,8 @@ class ErrorBudget(program.Case):
         return self.json("render", scene, "-o", "a.exr", "-q", "--camera", camera, *options)
 
     def check(self, error, parts=tuple(PARTS)):
-        """Every part is a number from 0 up with a bound that is no less; squares add up to the whole."""
+        """Every part is at least 0 and has a bound at least as large; the squares add up to the
+        whole."""
         self.assertEqual(sorted(error["parts"]), sorted(parts))
         for of in (error, *error["parts"].values()):
             self.assertTrue(0.0 <= of["estimate"] <= of["bound_95"] < math.inf, error)
@@ -153,7 +154,8 @@ class ErrorBudget(program.Case):
         self.assertEqual(error["targets"][0]["pixels"], 0)
 
     def test_what_is_not_captured_is_said(self):
-        """Of a curved mirror and a ball of glass the lamps' and the Sun's light is named, with its share and the object."""
+        """For a curved mirror and a ball of glass, caustics of the lamps and the Sun are named with
+        their share and the object."""
         sources = "caustics: light of lamps, Sun and emitters "
         thrown = sources + "that curved mirrors, or two flat mirrors in turn, throw: about "
         through = sources + "through glass that bends it, which casts a shadow: about "
@@ -171,7 +173,7 @@ class ErrorBudget(program.Case):
                 ("plain", "radiosity", []), ("ball", "radiosity", []), ("mirror", "radiosity", [thrown]),
                 ("glass", "radiosity", [through]), ("sheet", "radiosity", []), ("plain", "paths", []), ("ball", "paths", []),
                 ("mirror", "paths", [traced]),
-                ("wide", "paths", []),  # every source there has a size, which paths meet
+                ("wide", "paths", []),  # every source has a size, so that paths hit it
                 ("plain", "distributed", [wide]), ("plain", "none", [between]), ("mirror", "none", [between, thrown])):
             found = self.render("--indirect", how, scene=scene + ".toml")["error"]["not_captured"]
             self.assertEqual(len(found), len(missing), (scene, how, found))

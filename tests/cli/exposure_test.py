@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How bright PNGs are: --exposure and --curve of render, and one white for all pictures of a study."""
+"""Brightness of PNGs: --exposure and --curve of render, and one white for all pictures of a study.
+"""
 import math
 import unittest
 
@@ -32,7 +33,7 @@ class Render(tiny_bay.Case):
         self.assertAlmostEqual(self.byte("--exposure", "20cd/m2"), srgb(level / 20), delta=1)
         self.assertAlmostEqual(self.byte("--exposure", "40"), srgb(level / 40), delta=1)
         self.assertEqual(self.byte("--exposure", "5", "--curve", "clip"), 255)
-        # Straight to 0.6 of white, then 1 - 0.4 exp(-(x - 0.6) / 0.4).
+        # Linear to 0.6 of white, then 1 - 0.4 exp(-(x - 0.6) / 0.4).
         x = level / 5
         self.assertAlmostEqual(self.byte("--exposure", "5"), srgb(1 - 0.4 * math.exp(-(x - 0.6) / 0.4)), delta=1)
 
@@ -58,15 +59,15 @@ class Render(tiny_bay.Case):
 
 
 class Probe(tiny_bay.Case):
-    """Where the light at a pixel comes from."""
+    """Sources of the light at a pixel."""
 
     def setUp(self):
         super().setUp()
         self.write("box.toml", CLOSED_BOX)
 
     def test_half_of_a_furnace_is_its_own(self):
-        # B = M / (1 - rho): of 20 lm/m^2 the wall gives 10 itself; of the 10 that it reflects half is what the room's walls give
-        # themselves, and half what they reflect.
+        # B = M / (1 - rho): of 20 lm/m^2 the wall emits 10. Of the 10 that it reflects, the other
+        # walls emitted half and reflected half.
         report = self.json("render", "box.toml", "--probe", "12,8")
         pixel = report["pixel"]
         self.assertAlmostEqual(pixel["luminance_cd_m2"], 20 / math.pi, delta=0.02)
@@ -100,7 +101,7 @@ class Study(tiny_bay.Case):
             if result["target"] != "box":
                 continue
             shares = [*result["light_from"].values(), *result["light_by_way_of"].values()]
-            # No highlights here: what is straight and what comes by way of others is all, to the rays' noise.
+            # No highlights: direct and indirect light are all, up to the rays' noise.
             self.assertAlmostEqual(sum(shares), 1, delta=0.06)
         clean = [figure for figure in study["figures"] if figure["clean"]]
         white, = {figure["white_cd_m2"] for figure in clean}
@@ -127,7 +128,7 @@ class Study(tiny_bay.Case):
 
 
 class BlackBack(tiny_bay.Case):
-    # A panel that shows its back to camera B, lit through by nothing, before the floor.
+    # A panel whose back faces camera B, with no light through it, in front of the floor.
     PANEL = """
 [[object]]
 name = "panel"

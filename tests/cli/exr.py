@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads what the program writes: scan-line OpenEXR, FLOAT and HALF channels, ZIP. Independent of the library."""
+"""Reads the program's output: scan-line OpenEXR, FLOAT and HALF channels, ZIP. Independent of the
+library."""
 import array
 import struct
 import zlib
@@ -27,12 +28,13 @@ def _unpack(block, size):
 
 
 def read(path):
-    """(header, width, height, channels): header maps names to str, float, 16 floats or raw bytes."""
+    """(header, width, height, channels): header maps names to str, float, 16 floats or raw bytes.
+    """
     with open(path, "rb") as file:
         data = file.read()
     magic, version = struct.unpack_from("<ii", data)
     assert magic == 20000630 and version & 0xFF == 2, "not OpenEXR"
-    header, names, at = {}, {}, 8  # names: how struct unpacks a row of so many numbers
+    header, names, at = {}, {}, 8  # names: struct format for a row of so many numbers
     while data[at]:
         name, at = _text(data, at)
         kind, at = _text(data, at)
@@ -70,7 +72,7 @@ def read(path):
     return header, width, height, channels
 
 
-# A channel's number type in the file, and how struct packs it.
+# Number type of a channel in the file, and its struct format.
 TYPES = {"uint": (0, "I"), "half": (1, "e"), "float": (2, "f")}
 
 
@@ -79,9 +81,9 @@ def _attribute(name, kind, value):
 
 
 def pack(width, height, channels, kind="float", corner=(0, 0), display=None, more=(), sampling=1, pixels=True):
-    """The bytes of an uncompressed scan-line file. channels: names to one value or to a list of all; display: the window
-    (x0, y0, x1, y1), else that of the data; more: (name, type, bytes) of further attributes; pixels=False: header and
-    offset table alone."""
+    """The bytes of an uncompressed scan-line file. channels: names to one value or to a list of
+    all. display: the window (x0, y0, x1, y1), by default the data window. more: (name, type, bytes)
+    of further attributes. pixels=False: header and offset table only."""
     number, letter = TYPES[kind]
     x0, y0 = corner
     data = (x0, y0, x0 + width - 1, y0 + height - 1)

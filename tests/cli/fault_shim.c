@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Preloaded (LD_PRELOAD) into a program, makes the k-th system call of one kind fail, whoever makes
-// it: seccomp stops those calls before the kernel sees them, so that those of the C library itself
-// (stdio, malloc) count too, which a replaced write() would not see.
+// Preloaded into a program (LD_PRELOAD), makes the k-th system call of one kind fail. seccomp
+// intercepts the calls in the kernel, so that calls within the C library (stdio, malloc) count too;
+// a replacement of write() would not see them.
 //
 //   FAULT_KIND    write, rename, open, fsync or memory (mmap and brk); link; lock; over: a rename
-//                 onto a file that is there; end: any that changes or flushes files
-//   FAULT_AT      the number of the call that fails, from 1; 0 counts only
-//   FAULT_STAYS   1: each later one fails as well (a full disk, no memory left)
+//                 onto an existing file; end: all calls that change or flush files
+//   FAULT_AT      number of the failing call, from 1; 0: only count
+//   FAULT_STAYS   1: all later calls fail as well (a full disk, no memory)
 //   FAULT_ERROR   errno of the failure; 0: the process is killed before the call
-//   FAULT_COUNT   a file that takes the number of such calls at the end
-//   FAULT_LOG     with `end`, a file that takes a line for each call that was done: w, s or r
-//                 (written, flushed, renamed) and the inode, of a rename that of the file
-//   FAULT_CLOCK   seconds that clocks jump by at each look, forth and back
+//   FAULT_COUNT   file that receives the number of such calls at the end
+//   FAULT_LOG     with `end`, file that receives a line per completed call: w, s or r
+//                 (written, flushed, renamed) and the inode; for a rename, the file's inode
+//   FAULT_CLOCK   seconds by which clocks jump forth and back at each reading
 //
-// Clocks go by how often they are looked at, so that the files of one thread's runs are the same
-// bytes. Linux on x86-64.
+// Clocks advance with each reading, so that runs of one thread write equal bytes. Linux on x86-64.
 #define _GNU_SOURCE
 #include <errno.h>
 #include <fcntl.h>
@@ -34,7 +33,7 @@
 #include <ucontext.h>
 #include <unistd.h>
 
-// In an argument that the kernel does not look at: this call is the handler's own.
+// In an unused argument: marks the handler's own calls.
 enum { mark = 0x46544c54 };
 
 static atomic_long count;
@@ -57,7 +56,7 @@ static long call(long number, long a, long b, long c, long d, long e, long f) {
 
 static int is_rename(long number) { return number == SYS_rename || number == SYS_renameat || number == SYS_renameat2; }
 
-// The new name of a rename or link.
+// The inode of the new name of a rename or link.
 static long new_inode(long number, const greg_t* r) {
   struct stat found;
   const int beside = number != SYS_rename && number != SYS_link;
@@ -85,11 +84,11 @@ static void stopped(int signal_number, siginfo_t* info, void* context) {
   const long now = counts ? atomic_fetch_add(&count, 1) + 1 : 0;
   if (fails_at > 0 && now > 0 && (stays ? now >= fails_at : now == fails_at)) {
     if (error_number == 0) call(SYS_kill, getpid(), SIGKILL, 0, 0, 0, mark);
-    // brk gives the old end where it cannot move it.
+    // A failing brk returns the old end.
     r[REG_RAX] = number == SYS_brk ? call(SYS_brk, 0, 0, 0, 0, 0, mark) : -error_number;
     return;
   }
-  // mmap uses all six arguments; of the fifth, a file's number, the kernel reads 32 bits.
+  // mmap uses all six arguments; the kernel reads only 32 bits of the fifth, a file descriptor.
   const int is_mmap = number == SYS_mmap;
   r[REG_RAX] = call(number, r[REG_RDI], r[REG_RSI], r[REG_RDX], r[REG_R10],
                     is_mmap ? (long)((unsigned long)mark << 32 | (unsigned)r[REG_R8]) : r[REG_R8],
@@ -124,10 +123,10 @@ static void filter(const int* calls) {
     const int is_mmap = *calls == SYS_mmap;
     LOAD(nr);
     IF((unsigned)*calls, 0, is_mmap || *calls == SYS_write || *calls == SYS_writev ? 6 : 4);
-    if (*calls == SYS_write || *calls == SYS_writev) {  // messages are not what is looked at
+    if (*calls == SYS_write || *calls == SYS_writev) {  // messages do not count
       LOAD(args[0]);
       IF(2, 2, 0);
-    } else if (is_mmap) {  // a file's pages are taken by the loader, which has no way to say no
+    } else if (is_mmap) {  // file mappings are made by the loader, which cannot report errors
       LOAD(args[3]);
       code[n++] = (struct sock_filter)BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, 0x20, 0, 2);
     }
@@ -172,7 +171,7 @@ __attribute__((destructor)) static void end(void) {
   call(SYS_write, file, (long)text, size, 0, 0, mark);
 }
 
-// A microsecond further at each look.
+// Advances by a microsecond at each reading.
 static long now_us(void) {
   static atomic_long looks;
   return atomic_fetch_add(&looks, 1);
@@ -186,7 +185,7 @@ int clock_gettime(clockid_t clock, struct timespec* now) {
   return 0;
 }
 
-// std::clock(); the C library's own call of clock_gettime() is not replaced.
+// std::clock(): the C library's own call of clock_gettime() is not replaced.
 clock_t clock(void) { return now_us(); }
 
 time_t time(time_t* now) {

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""System calls that fail, one after the other, in every command that writes: no file is torn, no failure is kept back, a
-run afterwards writes the bytes of one that nothing happened to. The same where the process is killed before any one of
-the calls that change files, which are all the moments that files can tell apart; and where the power goes with it: what
-was not flushed is dropped, and names that a folder was given since it was flushed. File systems without links, without
-locks, without renaming onto a file that is there; clocks that jump.
+"""Failing system calls in every command that writes: no file is torn, every failure is reported,
+and the next run writes the bytes of an undisturbed one.
 
-Some calls of each kind are made to fail; all of them, and what was found as a table, with EARTHSHINE_FAULTS=all
-(an hour). EARTHSHINE_FAULTS=NAME does so for one command or one column of the table; `study accuracy`, the dearest, is taken in no other way.
-Exit code 77 where the calls cannot be stopped: elsewhere
-than on Linux on x86-64, or with a sanitizer, which wants to be preloaded itself.
+Also: the process is killed before any of the calls that change files, which are all the moments
+that files can distinguish; the power fails at the same time, which drops data that was not flushed
+and names in folders that were not flushed; file systems without links, locks, or renaming onto an
+existing file; clocks that jump.
+
+Tests some calls of each kind. EARTHSHINE_FAULTS=all tests all calls and prints a table (an hour).
+EARTHSHINE_FAULTS=NAME does so for one command or one column of the table; the slowest command,
+`study accuracy`, is tested only with it. Exit code 77 where calls cannot be intercepted: not on
+Linux on x86-64, or with a sanitizer, which needs to be preloaded itself.
 """
 import csv
 import errno
@@ -57,7 +59,7 @@ ACCURACY = ("study", "accuracy", "ball.toml", "-o", "d", "--wanted", "0.5", "--l
 DEGRADE = ("degrade", "a.exr", "-o", "c.png", "--scene", "ball.toml")
 RELIGHT = ("relight", "a.exr", "--set", "sun=0.5", "-o", "b.exr", "--png", "b.png")
 OLDER = ("--seed", "2")
-# What is called before, so that there is something to read and something to go over; the call.
+# Calls before the test, which write its inputs and older results; the tested call.
 COMMANDS = {
     "render": ([(*PICTURES, *OLDER)], PICTURES),
     "render --part": ([(*RENDER, *OLDER)], (*RENDER, "--part", "1/2")),
@@ -74,8 +76,8 @@ COMMANDS = {
     "study accuracy": ([(*ACCURACY, *OLDER)], ACCURACY),
     "report": ([ORBIT], ("report", "d")),
 }
-DEAR = ("study accuracy",)  # taken when asked for
-# The kind of call, what it answers, whether all later ones fail too.
+DEAR = ("study accuracy",)  # only on request
+# Kind of call, error, and whether all later calls fail too.
 FAULTS = {
     "full disk": ("write", errno.ENOSPC, True),
     "write": ("write", errno.EIO, False),
@@ -87,7 +89,8 @@ FAULTS = {
     "kill": ("end", 0, False),
     "power cut": ("end", 0, False),
 }
-# What a file system lacks, or a clock does; whether the work is done all the same, or may be refused with all files kept.
+# A missing feature of a file system, or a clock error; whether the work must succeed, or may be
+# refused with all files kept.
 PLACES = {
     "no links": ({"FAULT_KIND": "link", "FAULT_ERROR": errno.EPERM}, True),
     "no locks": ({"FAULT_KIND": "lock", "FAULT_ERROR": errno.EOPNOTSUPP}, True),
@@ -99,7 +102,7 @@ PLACES = {
 }
 UNFINISHED = re.compile(r"(^|/)\.[^/]*\.part$")
 WANTED = os.environ.get("EARTHSHINE_FAULTS", "")
-PICKED = 1  # calls of each kind of fault in each command, when not all are
+PICKED = 1  # calls per kind of fault and command, unless all are tested
 
 
 def files_of(folder):
@@ -107,7 +110,8 @@ def files_of(folder):
 
 
 def cut_power(folder, old, log):
-    """Drops what did not reach the disk: bytes written since a file was flushed, names given since their folder was."""
+    """Drops data that did not reach the disk: bytes written after a file's last flush, names given
+    after their folder's last flush."""
     lines = [line.split() for line in log.read_text().splitlines()]
     last = {(what, int(inode)): k for k, (what, inode) in enumerate(lines)}
     for path in [path for path in folder.rglob("*") if path.is_file()]:
@@ -122,7 +126,7 @@ def cut_power(folder, old, log):
 
 
 def results_of(files):
-    """Without what a study says of the work that it found done, and the page that shows it."""
+    """Without a study's record of finished work, and without the page that shows it."""
     found = dict(files)
     if "d/study.json" in found:
         found["d/study.json"] = tiny_bay.Case.without_times(json.loads(found["d/study.json"]))
@@ -131,14 +135,15 @@ def results_of(files):
 
 
 def without_seconds(data):
-    """A kept result without what it took, and the digest of that; other data as it is."""
+    """A cached result without its times and its digest; other data unchanged."""
     if not isinstance(data, bytes) or not data.startswith(b'{\n  "cache_key"'):
         return data
     return re.sub(rb'"(gather_seconds|seconds|digest)": [^,\n]*', b"", data)
 
 
 def steady(files):
-    """What does not follow from seconds: of the study of prices its pictures and their errors."""
+    """Results that do not depend on seconds; of the accuracy study the pictures and their errors.
+    """
     found = {path: data if path.endswith(".exr") else b"" for path, data in files.items()}
     rows = csv.DictReader(io.StringIO(files["d/accuracy.csv"].decode()))
     found["d/accuracy.csv"] = [[row[key] for key in ("method", "series", "setting", "error", "bias", "bound_95")] for row in rows]
@@ -162,13 +167,15 @@ class Faults(program.Case):
 
     def run_faulty(self, folder, call, kind, at=0, number=errno.EIO, stays=False, more=None):
         fault = {"LD_PRELOAD": self.shim, "FAULT_KIND": kind, "FAULT_AT": at, "FAULT_ERROR": number, "FAULT_STAYS": int(stays),
-                 "FAULT_COUNT": self.count, "PATH": "/nowhere"}  # no gnuplot: it would start under the filter
+                 "FAULT_COUNT": self.count, "PATH": "/nowhere"}  # no gnuplot: it would start under
+                                                                 # the filter
         fault |= more or {}
         return subprocess.run([program.PROGRAM, *call, "-j", "1", "-q"], cwd=folder, timeout=120, stdin=subprocess.DEVNULL,
                               capture_output=True, env=os.environ | {key: str(value) for key, value in fault.items()}, check=False)
 
     def before(self, name):
-        """A folder with the inputs, and with the results of another seed. Parts know where they were begun: made there."""
+        """A folder with the inputs and with results of another seed. Created in its final place,
+        because parts record their folder."""
         folder = self.folder / "now"
         folder.mkdir()
         rows = [f"{a},{0.3 + 0.9 * (1 - a / 90)}" for a in range(0, 90, 10)]
@@ -188,7 +195,7 @@ class Faults(program.Case):
         return there
 
     def judge(self, what, old, new, folder, run, call):
-        """Gives whether the run failed; what is wrong goes to `found`."""
+        """Returns whether the run failed; appends errors to `found`."""
         title = what.split(", ")[1]
         killed = run.returncode == -signal.SIGKILL and title.startswith(("kill", "power"))
         if title.startswith("power"):
@@ -205,7 +212,7 @@ class Faults(program.Case):
                 self.found.append(f"{what}: exit 0, other results: {[p for p in new['files'] if now.get(p) != new['files'][p]]}")
             return False
         if run.returncode < 0 and title.startswith("memory"):
-            self.ended += 1  # within a library that has no way to say so: HDF5, oneTBB
+            self.ended += 1  # in a library that cannot report it: HDF5, oneTBB
         elif not killed and (run.returncode not in (1, 2) or "earthshine: " not in said):
             self.found.append(f"{what}: exit {run.returncode}: {said!r}")
         again = self.run_faulty(folder, call, "fsync")
@@ -221,7 +228,7 @@ class Faults(program.Case):
             run = self.run_faulty(folder, COMMANDS[name][1], "", 1, stays=True, more=fault)
             now, kept = results_of(files_of(folder)), results_of(old)
             wanted = new["results"]
-            if "FAULT_CLOCK" in fault:  # these state seconds
+            if "FAULT_CLOCK" in fault:  # these contain seconds
                 now, wanted = ({path: without_seconds(data) for path, data in files.items() if path not in ("d/compare.json", "d/compare.csv")}
                                for files in (now, wanted))
             other = [path for path in now.keys() | wanted.keys() if now.get(path) != wanted.get(path)]

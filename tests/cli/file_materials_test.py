@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Materials, lamps and cameras that stand in mesh files, from the file to the picture."""
+"""Materials, lamps and cameras of mesh files, from the file to the picture."""
 import math
 import sys
 import unittest
@@ -18,8 +18,9 @@ SQUARE = [(0, 1, 2), (0, 2, 3)]
 class Maps(program.Case):
     def test_a_highlight_is_as_bright_as_its_model_has_it_where_it_is_brightest(self):
         for name, here, own in material_maps.rows(program.PROGRAM):
-            # A weak highlight of a dielectric fades: 0.04 of what is reflected at most. The roughest metals keep the
-            # light that they send back, which is bright to the sides, and have it everywhere alike.
+            # A weak highlight of a dielectric may be missing: at most 0.04 of the reflected light.
+            # The roughest metals reflect the right amount of light, but uniformly instead of
+            # brighter to the sides.
             if "metallic 1, base 0.9, roughness 1" in name:
                 self.assertAlmostEqual(here[0], 0.9 * (2 * (1 - math.log(2))) ** 2, delta=1e-3)
                 continue
@@ -55,7 +56,7 @@ class FileLamps(program.Case):
         self.assertAlmostEqual(report["lamps"][0]["flux_lm"][0], 4 * math.pi * 80)
         self.done("render", "a.toml", "-o", "a.exr", "--size", "33x33")
         green = exr.read(self.folder / "a.exr")[3]["G"]
-        # Under the bulb: L = rho E / pi, E = I / h^2, and the torch, 20 m away, shines elsewhere.
+        # Below the bulb: L = rho E / pi, E = I / h^2. The torch, 20 m away, shines elsewhere.
         self.assertAlmostEqual(green[16 * 33 + 16], 0.5 * 80 / 4 / math.pi, delta=0.01)
         self.write("a.toml", scene)
         self.assertEqual(self.json("inspect", "a.toml")["lamps"], [])

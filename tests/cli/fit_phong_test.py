@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""fit-phong on made-up measurements."""
+"""fit-phong on synthetic measurements."""
 import math
 import random
 import unittest

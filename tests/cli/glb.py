@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads a GLB file and holds it to glTF 2.0: chunks, alignment, ranges, bounds."""
+"""Reads a GLB file and checks it against glTF 2.0: chunks, alignment, ranges, bounds."""
 import json
 import struct
 

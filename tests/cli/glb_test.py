@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""solve --glb: what other people's viewers are given."""
+"""solve --glb: files for other viewers."""
 import unittest
 
 import glb
@@ -30,7 +30,7 @@ class Glb(program.Case):
             self.assertTrue(all(0 <= c <= 1 for vertex in colour for c in vertex))
 
     def test_colours_times_the_scale_are_the_radiosity(self):
-        # The closed box has 20 lm/m2 everywhere, so it is middle grey.
+        # The closed box has 20 lm/m2 everywhere and is therefore middle grey.
         self.write("box.toml", program.CLOSED_BOX)
         self.done("solve", "box.toml", "--glb", "box.glb")
         scene = glb.read((self.folder / "box.glb").read_bytes())

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a glTF file holds beside plain triangles: what changes the picture is used, or named."""
+"""Features of glTF files beyond plain triangles: features that change the picture are used or
+named."""
 import json
 import math
 import sys
@@ -36,7 +37,7 @@ resolution = [16, 16]
 
 
 def square(material=None, **node):
-    """A model of a square metre in z = 0 that looks along +z, and its primitive."""
+    """A model of one square metre in z = 0 that faces +z, and its primitive."""
     model = model_kit.Model()
     model.material(**(material or GREY))
     model.mesh("square", SQUARE, FACES, 0, **node)
@@ -63,7 +64,7 @@ class Gltf(program.Case):
         return [math.pi * v / 1000 for v in exr.read(self.folder / "out.exr")[3][channel]]
 
     def test_a_constant_colour_of_vertices_multiplies_the_base_colour(self):
-        # glTF 2.0, 3.9.2: 0.5 times 0.2 is 0.1. The same as bytes, which are always normalised.
+        # glTF 2.0, 3.9.2: 0.5 times 0.2 is 0.1. The same for bytes, which are always normalised.
         for rows, letter, normalized in [([(0.2, 0.2, 0.2, 1)] * 4, "f", False), ([(0.2, 0.2, 0.2)] * 4, "f", False),
                                          ([(51, 51, 51, 255)] * 4, "B", True), ([(13107,) * 3] * 4, "H", True)]:
             model, primitive = square()
@@ -76,7 +77,8 @@ class Gltf(program.Case):
                 self.assertAlmostEqual(factor, 0.1, delta=1e-4)
 
     def test_a_colour_that_varies_over_a_triangle_shows_and_has_its_mean(self):
-        # From 0 at x = -0.5 to 1 at 0.5: the mean of the square is 0.5, and 0.5 times that is 0.25.
+        # From 0 at x = -0.5 to 1 at 0.5: the mean over the square is 0.5, and 0.5 times this is
+        # 0.25.
         model, primitive = square()
         primitive["attributes"]["COLOR_0"] = model.accessor([(x + 0.5,) * 3 for x, _, _ in SQUARE])
         self.assertAlmostEqual(self.inspected(model)["materials"][0]["diffuse"][0], 0.25, places=6)
@@ -116,7 +118,8 @@ class Gltf(program.Case):
         model.json["skins"] = [{"joints": [joint]}]
         report = self.inspected(model)
         self.assertAlmostEqual(report["objects"][0]["area_m2"], 4.0, places=5)
-        # Half of the weight on a joint 2 m above, brought back by its inverse bind matrix: 1 m up.
+        # Half of the weight is on a joint 2 m above, shifted back by its inverse bind matrix: 1 m
+        # up.
         lifted, primitive = square(skin=0)
         identity = [1.0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
         primitive["attributes"] |= {"JOINTS_0": lifted.accessor([(0, 1, 0, 0)] * 4, "B"),
@@ -125,7 +128,7 @@ class Gltf(program.Case):
         inverse = lifted.accessor([tuple(identity), tuple(identity[:14] + [-1.0, 1.0])])
         lifted.json["skins"] = [{"joints": joints, "inverseBindMatrices": inverse}]
         factors = self.factors(lifted, SCENE + SUN + CAMERA.replace("fov_deg = 10", "fov_deg = 30"))
-        # 1 m across at 4 m of 5: of 16 pixels over 2 x 4 tan 15 deg it fills 7.46 a side.
+        # 1 m wide at 4 of 5 m: of 16 pixels over 2 x 4 tan 15 deg it fills 7.46 per side.
         lit = sum(1 for f in factors if f > 0.25)
         self.assertAlmostEqual(math.sqrt(lit), 16 / (8 * math.tan(math.radians(15))), delta=1.0)
 
@@ -145,7 +148,7 @@ class Gltf(program.Case):
         self.says(run.stderr, "EXT_mesh_gpu_instancing", "2 and 3 values")
 
     def test_directional_lights_are_distant_lamps(self):
-        # 500 lx along -z, as the node has it, wherever it hangs.
+        # 500 lx along -z, by the node, at any position.
         model, _ = square()
         model.node(name="L", translation=[0, 0, 2], extensions={"KHR_lights_punctual": {"light": 0}})
         model.json |= {"extensionsUsed": ["KHR_lights_punctual"], "extensions": {
@@ -171,19 +174,19 @@ class Gltf(program.Case):
         del primitive["material"]
         report = self.inspected(model)
         self.assertEqual(report["materials"][0]["name"], "glTF default")
-        # Metallic 1, roughness 1: GGX's albedo for even light, (2 (1 - ln 2))^2.
+        # Metallic 1, roughness 1: albedo of GGX for uniform light, (2 (1 - ln 2))^2.
         self.assertAlmostEqual(report["materials"][0]["diffuse"][0], (2 * (1 - math.log(2))) ** 2, delta=1e-3)
 
     def test_lengths_are_metres_whatever_the_scene_s_unit(self):
         for unit, metres in [("m", 1), ("mm", 1e-3), ("in", 0.0254)]:
             scene = SCENE.replace("format = 1", f'format = 1\nunit = "{unit}"')
             self.assertAlmostEqual(self.object_of(square()[0], scene)["area_m2"], 1.0, places=6)
-            # translate and scale are the scene's.
+            # translate and scale are from the scene.
             half = scene + f"scale = 0.5\ntranslate = [0, 0, {1 / metres}]\n"
             self.assertAlmostEqual(self.object_of(square()[0], half)["area_m2"], 0.25, places=6)
 
     def test_axes_stand_a_file_upright_or_leave_it(self):
-        # The square looks along its file's +z; y up brought to z up it looks along -y.
+        # In its file the square faces +z; with y up turned to z up it faces -y.
         up = SCENE.replace("as-is", "y-up")
         lit = '[sun]\ndirection = [0, -1, 0]\nilluminance = 1000\nangular_radius_deg = 0\n'
         camera = CAMERA.replace("[0, 0, 5]", "[0, -5, 0]").replace("[0, 1, 0]", "[0, 0, 1]")
@@ -234,7 +237,7 @@ material = "w"
                 self.assertAlmostEqual(a, b, delta=1e-3 * max(pictures[0]))
 
     def test_emission_by_a_second_set_of_coordinates(self):
-        # White at u = 0, black at u = 1; the second set has all corners at the black end.
+        # White at u = 0, black at u = 1; in the second set all corners are at the black end.
         picture = model_kit.png(2, 1, lambda x, y: (255 - 255 * x,) * 3)
         for second, emitted in [(0.25, math.pi), (0.75, 0.0)]:
             model, primitive = square(GREY | {"emissiveFactor": [1, 1, 1]})
@@ -251,7 +254,8 @@ material = "w"
                 self.assertEqual(report["warnings"], [])
 
     def test_textures_of_glossiness_and_transmission_count_by_their_means(self):
-        # Glossiness 0.5 by alpha: roughness 0.5, no mirror. Specular 1 times sRGB 188, 0.5 in linear light.
+        # Glossiness 0.5 by alpha: roughness 0.5, no mirror. Specular 1 times sRGB 188 is 0.5 in
+        # linear light.
         glossy = {"name": "s", "extensions": {"KHR_materials_pbrSpecularGlossiness": {
             "diffuseFactor": [0, 0, 0, 1], "specularGlossinessTexture": {"index": 0}}}}
         model, primitive = square(glossy)
@@ -261,7 +265,7 @@ material = "w"
         self.assertEqual(report["materials"][0]["mirror"], [0, 0, 0])
         self.assertGreater(report["materials"][0]["specular"][0], 0.1)
         self.says(" ".join(report["warnings"]), "specular-glossiness maps, but for their means")
-        # Half of the glass passes light: red 128 of a linear texture.
+        # Half of the glass transmits light: red 128 of a linear texture.
         glass = {"name": "t", "doubleSided": True, "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0},
                  "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1,
                                                                "transmissionTexture": {"index": 0}}}}
@@ -284,7 +288,7 @@ material = "w"
             run = self.run_program(*command)
             self.assertEqual(run.returncode, 0, run.stderr)
             self.says(run.stderr, *named)
-        # Nothing is lacking of a material that the scene replaces.
+        # No warning for a material that the scene replaces.
         override = SCENE + 'material = "w"\n[[material]]\nname = "w"\ndiffuse = 0.5\n' + SUN
         self.assertNotIn("clearcoat", " ".join(self.inspected(model, override)["warnings"]))
 
@@ -297,7 +301,7 @@ material = "w"
         run = self.run_program("inspect", "s.toml")
         self.assertEqual(run.returncode, 2)
         self.says(run.stderr, "KHR_draco_mesh_compression", "npx @gltf-transform/cli copy")
-        # meshopt's plain form would stand in a buffer that is not there.
+        # meshopt's plain form would be in a buffer that does not exist.
         model, _ = square()
         model.json["extensionsUsed"] = ["EXT_meshopt_compression"]
         data = model.glb()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes that are likely to fool an error estimate: the bound holds, or what is missing is named."""
+"""Scenes on which an error estimate may fail: the bound holds, or the missing light is named."""
 import math
 import sys
 import unittest
@@ -13,7 +13,7 @@ import hard_scenes  # noqa: E402
 
 class HardCases(program.Case):
     def picture(self, hard, *options, name="out.exr"):
-        """(report, luminances)"""
+        """(report, luminances)."""
         self.write("hard.toml", hard.text)
         report = self.json("render", "hard.toml", "--error", "0.1", "-o", name, *options, code=(0, 3))
         return report, error_truth.picture(self.folder / name)[0]
@@ -29,11 +29,12 @@ class HardCases(program.Case):
         return found
 
     def holds(self, hard, paths, size="16x16"):
-        """The true error of the picture, by two runs of the path tracer, is within the bound that is stated."""
+        """The true error of the picture, by two runs of the path tracer, is within the stated
+        bound."""
         report, light = self.picture(hard, "--size", size)
         truth = error_truth.compare(light, *self.references(hard, paths, size))
         error = report["error"]
-        # The references' noise is in the square's standard error.
+        # The standard error of the square includes the references' noise.
         self.assertLess(truth.error**2, error["bound_95"]**2 + 4 * truth.doubt, (truth.error, error))
         self.assertLess(error["estimate"], error["bound_95"])
         return truth, error
@@ -44,8 +45,8 @@ class HardCases(program.Case):
         self.mean_is_known(hard)
 
     def mean_is_known(self, hard):
-        """The mean illuminance that conservation demands: a mean's error is at most the root mean square error, which is stated
-        over the root mean square, and that is no less than the mean."""
+        """The mean illuminance by conservation: the error of a mean is at most the RMS error, which
+        is stated relative to the RMS, and the RMS is not smaller than the mean."""
         solved = self.json("solve", "hard.toml", "--error", "0.1", code=(0, 3))
         area = sum(thing["area_m2"] for thing in solved["objects"])
         mean = sum(thing["area_m2"] * thing["illuminance_lx"][1] for thing in solved["objects"]) / area
@@ -58,22 +59,23 @@ class HardCases(program.Case):
         self.holds(hard_scenes.sun_spot(), 2048, "8x8")
 
     def test_a_room_lit_through_a_pinhole(self):
-        """Of 16 pictures at most 4 pass their bound, which 95 in 100 hold: more have a chance of 9e-4."""
+        """At most 4 of 16 pictures exceed their bound, which holds in 95 of 100 cases: more have a
+        probability of 9e-4."""
         hard = hard_scenes.pinhole()
         references, passed = self.references(hard, 4096, "16x16"), 0
         for seed in range(1, 17):
             report, light = self.picture(hard, "--size", "16x16", "--seed", seed)
             truth, error = error_truth.compare(light, *references), report["error"]
-            # The references' noise is in the square's standard error.
+            # The standard error of the square includes the references' noise.
             passed += truth.error**2 >= error["bound_95"]**2 + 4 * truth.doubt
             self.assertLess(error["estimate"], error["bound_95"])
-            # What leaks along walls and floors into the dark room was 30 times what comes through the hole.
+            # Light leaks along walls and floors must stay far below the light through the hole.
             self.assertLess(abs(truth.bias), 0.25 + 4 * math.sqrt(truth.doubt))
         self.assertLess(passed, 5)
 
     def test_a_room_lit_through_a_pinhole_reaches_its_error(self):
-        """Most samples find no light, so that what is stated rises again and again: some fifty rounds. Ends within a limit,
-        should there be no end."""
+        """Most samples find no light, so that the stated error rises repeatedly: about fifty
+        rounds. The time limit ends the test if the rounds do not."""
         self.write("hard.toml", hard_scenes.pinhole().text)
         report = self.json("render", "hard.toml", "--error", "0.05", "--size", "12x12", "--time-limit", 300, "-o", "out.exr")
         self.assertLessEqual(report["error"]["estimate"], 0.05)
@@ -82,8 +84,9 @@ class HardCases(program.Case):
         self.holds(hard_scenes.baffle(), 1024)
 
     def test_a_picture_of_one_pixel(self):
-        """One pixel's error is one number and passes its bound once in twenty times: of 40 pictures in at most 7 (8 or more have
-        a chance of 7e-4 if the bound is right, and of 0.8 if it is passed once in four times)."""
+        """The error of one pixel exceeds its bound in one of twenty cases: in at most 7 of 40
+        pictures (8 or more have a probability of 7e-4 if the bound is right, and of 0.8 if it is
+        exceeded in one of four)."""
         hard = hard_scenes.one_pixel()
         self.write("hard.toml", hard.text)
         self.done("render", "hard.toml", "--size", "1x1", "--indirect", "paths", "--seed", 71, "--set", "quality.gather_rays=65536",
@@ -98,7 +101,7 @@ class HardCases(program.Case):
     def test_next_to_nothing_to_see(self):
         truth, error = self.holds(hard_scenes.black_picture(), 256)
         self.assertLess(truth.mean, 1e-11)
-        self.assertLess(error["bound_95"], 0.2)  # relative, as ever
+        self.assertLess(error["bound_95"], 0.2)  # relative, as always
 
     def test_a_hundred_reflections(self):
         hard = hard_scenes.white_room()
@@ -123,7 +126,8 @@ class HardCases(program.Case):
 
     def test_a_caustic_is_named(self):
         report, _ = self.picture(hard_scenes.caustic())
-        # Of 20000 lx the ball catches 1/4 of 1 m2, the floor 1/sqrt 2 of 16 m2 but for the ball's shadow: 0.9 pi/4 / (16 / sqrt 2).
+        # Of 20000 lx the ball receives 1/4 of 1 m2, the floor 1/sqrt 2 of 16 m2 without the ball's
+        # shadow: 0.9 pi/4 / (16 / sqrt 2).
         named, = report["error"]["not_captured"]
         self.says(named, "caustics", "curved mirrors")
         self.assertAlmostEqual(float(named.split("about ")[1].split(" %")[0]), 100 * 0.9 * math.pi / 4 / (16 / math.sqrt(2)), delta=1.0)
@@ -140,8 +144,9 @@ class HardCases(program.Case):
 
 class Edges(program.Case):
     def test_no_pixel_of_the_bay_is_off_by_more_than_its_noise(self):
-        """At the feet of walls and across facets of foil light changes within a pixel. Where neighbours share nothing, noise is
-        all that is stated, and the true error is that, no more and no less (four standard errors of its square)."""
+        """At the feet of walls and across facets of foil, light changes within a pixel. Without
+        sharing between neighbours the stated error is pure noise, and the true error must equal it
+        (four standard errors of its square)."""
         library = program.TOP / "scenes" / "library" / "sts46"
         (self.folder / "meshes").symlink_to(library / "meshes")
         self.write("bay.toml", (library / "day-sun.toml").read_text().replace("error = 0.05", "# error"))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files made to take memory or time, or to lead elsewhere: refused with one line, in the memory that was allowed. What
-docs/reliability.md has as a table. Pictures that announce too much, meshes and geometry: memory_test.py; links in HDF5: tests/base/files/hdf5_file_test.cpp."""
+"""Files made to use memory or time, or to read other files: refused with one line, within the
+allowed memory. docs/reliability.md has them as a table. Oversized pictures, meshes and geometry:
+memory_test.py. Links in HDF5: tests/base/files/hdf5_file_test.cpp."""
 import base64
 import json
 import os
@@ -39,7 +40,7 @@ def zeros_packed(mib):
 
 class Hostile(program.Case):
     def ends(self, code, *call):
-        """Within the memory allowed; gives what was said."""
+        """Runs within the allowed memory; returns the message."""
         with subprocess.Popen([program.PROGRAM, *map(str, call), "--max-memory", f"{ALLOWED_MIB}MiB"], cwd=self.folder,
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (20, 20))) as run:
@@ -88,7 +89,7 @@ class Hostile(program.Case):
         self.says(self.ends(1, "inspect", self.scene("g.gltf")), "g.gltf", "--max-memory")
 
     def test_pictures_that_are_packed_small(self):
-        """8 x 8 pixels: what is packed after them takes time, never room."""
+        """8 x 8 pixels: additional compressed data takes time, but no memory."""
         bomb = zeros_packed(256)
         rows = zlib.compress(bytes(25 * 8))
         header = struct.pack(">IIBBBBB", 8, 8, 8, 2, 0, 0, 0)
@@ -110,7 +111,8 @@ class Hostile(program.Case):
             self.says(self.ends(2, "relight", "a.exr", "-o", "o.exr"), "a.exr")
 
     def test_files_of_files_stay_in_the_folder(self):
-        """What the scene itself names may lie anywhere: it is the caller's word. What a mesh names, somebody else's, not."""
+        """Files that the scene names may be anywhere, because the caller trusts the scene. Files
+        that a mesh names may not."""
         (self.folder / "s/in").mkdir(parents=True)
         self.write("out.mtl", "newmtl m\nKd 1 1 1\n")
         self.write("out.bin", base64.b64decode(POINTS))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""No output of any command may be a file that the command reads, by whatever name; said before any work."""
+"""No output of any command may be one of its inputs, under any name; tested before any work."""
 import hashlib
 import os
 import pathlib
@@ -58,7 +58,7 @@ class InputsKept(program.Case):
             self.kept("solve", "scene.toml", "-o", name, name=name)
 
     def test_pictures_of_materials_that_are_not_read(self):
-        """Bump maps, and all maps of a mesh whose material is the scene's."""
+        """Bump maps, and all maps of a mesh with a material of the scene."""
         names = ("skin of a.png", "bump.png", "shine.png", "quoted.png", "elsewhere.png")
         for name in names:
             self.write(name, "not read")
@@ -93,7 +93,7 @@ class InputsKept(program.Case):
             self.kept(*render, *more, option, name, name=name)
 
     def test_folder_of_a_study(self):
-        """Whichever file of the folder it is: those of pictures and points have names of their own."""
+        """Any file of the folder. Pictures and points have unique names."""
         for command, file in (("orbit", "results.csv"), ("visibility", "report.html"), ("compare", "compare.json"),
                               ("accuracy", "accuracy.csv")):
             folder = self.folder / command
@@ -145,7 +145,7 @@ class InputsKept(program.Case):
         self.kept("solve", "scene.toml", "--solution", "s.h5", "-o", "s.h5", name="s.h5")
 
     def test_report(self):
-        """The page would go over the results that it is drawn from."""
+        """The page would overwrite the results from which it is drawn."""
         folder = pathlib.Path(self.folder / "r")
         folder.mkdir()
         self.write("r/study.json", "{}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""inspect, plan and form-factors on small scenes whose figures are known."""
+"""inspect, plan and form-factors on small scenes with known figures."""
 import csv
 import io
 import unittest
@@ -60,7 +60,8 @@ class Inspect(program.Case):
         self.write("ball.toml", program.BALL + program.IES_LAMP)
         lamp = self.json("inspect", "ball.toml")["lamps"][-1]
         self.assertEqual((lamp["type"], lamp["source"], lamp["group"]), ("ies", "even.ies", "flood"))
-        self.assertAlmostEqual(lamp["flux_lm"][1], 2 * 3.141592653589793 * 100)  # 100 cd, below only
+        self.assertAlmostEqual(lamp["flux_lm"][1], 2 * 3.141592653589793 * 100)  # 100 cd, downward
+                                                                                 # only
         self.says(self.done("inspect", "ball.toml"), "lamp flood: ies (even.ies), group flood, 628.319")
         self.assertIn("flood", self.json("plan", "ball.toml")["light_groups"])
         flux = self.json("inspect", "ball.toml", "--set", "light.flood.flux=300")["lamps"][-1]["flux_lm"]
@@ -98,7 +99,8 @@ class Plan(program.Case):
         self.says(self.done("plan", "ball.toml"), "yes", "no ", "patches")
 
     def test_memory_is_stated_by_part_and_near_what_is_taken(self):
-        # Even patches: their number is no upper bound. The room's rows are all but full.
+        # Uniform patches: their number is exact, not an upper bound. The room's rows are nearly
+        # full.
         self.write("box.toml", program.CLOSED_BOX)
         finer = ("--set", "quality.patch_edge=0.04", "--set", "quality.form_factor_rays=512")
         plan = self.json("plan", "box.toml", *finer)

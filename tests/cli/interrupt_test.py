@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ctrl-C and time limits that come while `render` still solves: a picture all the same; and of `solve` what it had come to."""
+"""Ctrl-C and time limits while `render` still solves: it writes a picture; `solve` writes its
+current solution."""
 import json
 import signal
 import subprocess
@@ -9,7 +10,7 @@ import unittest
 import exr
 import program
 
-# A solve of minutes: the picture reads it.
+# A solve of minutes, which the picture needs.
 LONG = ("--set", "quality.patch_edge=0.02", "--set", "quality.form_factor_rays=65536")
 STOP_S = 2.0  # after the start: long after the scene is read, long before it is solved
 WHITE = (0.2126, 0.7152, 0.0722)
@@ -29,7 +30,7 @@ class BrokenOff(program.Case):
         self.done("render", "ball.toml", "-o", "whole.exr", "--camera", "A", "--size", "96x72", "--error", "0.01")
 
     def stopped(self, *call, signal_number=signal.SIGINT):
-        """(exit code, output, messages, seconds from the signal on)."""
+        """(exit code, output, messages, seconds since the signal)."""
         process = subprocess.Popen([program.PROGRAM, *call], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         time.sleep(STOP_S)
         self.assertIsNone(process.poll())
@@ -39,7 +40,8 @@ class BrokenOff(program.Case):
         return process.returncode, out, err, time.monotonic() - start
 
     def is_the_picture(self, stated):
-        """What paths find without a solution is the light of the whole picture: means differ by no more than the pixels do."""
+        """Paths without a solution give the light of the whole picture: means differ by no more
+        than the pixel errors."""
         header, width, height, _ = exr.read(self.folder / "a.exr")
         self.assertEqual((width, height), (96, 72))
         self.assertLess(abs(mean(self.folder / "a.exr") / mean(self.folder / "whole.exr") - 1), stated)
@@ -98,7 +100,7 @@ class BrokenOff(program.Case):
             code, out, err, seconds = self.stopped("study", study, "ball.toml", "-o", "d", "--camera", "A", "-q", *LONG)
             self.assertEqual((code, out), (-signal.SIGINT, ""))
             self.assertEqual(err, "earthshine: interrupted: ended without what was under way\n")
-            self.assertLess(seconds, 5)  # at once, but for other processes
+            self.assertLess(seconds, 5)  # immediate, except for other processes
 
     def test_a_solve_keeps_what_it_had_come_to(self):
         code, out, err, seconds = self.stopped("solve", "ball.toml", "--error", "0.0005", "-o", "a.h5", "--json")
@@ -107,7 +109,7 @@ class BrokenOff(program.Case):
         report = json.loads(out)
         self.assertEqual(report["error"]["limit"], "stopped")
         self.assertGreater(report["error"]["estimate"], 0.0005)
-        self.assertLess(seconds, 10)  # the error would take minutes
+        self.assertLess(seconds, 10)  # the wanted error would take minutes
         self.done("render", "ball.toml", "-o", "a.exr", "--camera", "A", "--size", "96x72", "--error", "0.0005", "--time-limit", "3",
                   "--solution", "a.h5")
         self.is_the_picture(0.03)

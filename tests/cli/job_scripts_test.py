@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The job scripts of docs/cluster.md: bash reads them, and an array run by hand comes to the study of one process."""
+"""The job scripts of docs/cluster.md: bash parses them, and an array run by hand gives the study of
+one process."""
 import os
 import pathlib
 import re

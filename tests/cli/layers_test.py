@@ -10,7 +10,7 @@ import program
 
 
 def ranks(channels, kind, pixel):
-    """(bits of the id, coverage) of every rank that covers something."""
+    """(bits of the id, coverage) of every rank with coverage."""
     found = []
     for layer in ("00", "01", "02"):
         for name, cover in (("R", "G"), ("B", "A")):
@@ -22,7 +22,7 @@ def ranks(channels, kind, pixel):
 
 
 def manifest(header, kind):
-    """Found as a compositing program does: by the layer's name among all keys."""
+    """Lookup as in a compositing program: by the layer's name among all keys."""
     keys = [name.split("/")[1] for name, value in header.items()
             if name.startswith("cryptomatte/") and name.endswith("/name") and value == kind]
     assert len(keys) == 1 and len(keys[0]) == 7
@@ -61,14 +61,15 @@ class Layers(program.Case):
             covered = [coverage for _, coverage in ranks(channels, "CryptoObject", pixel)]
             self.assertEqual(covered, sorted(covered, reverse=True))
             self.assertLessEqual(sum(covered), 1.0)
-        # The matte's mean is the object's share of the picture, which the ids know to the pixels of its edge.
+        # The matte's mean is the object's share of the picture; the ids give it except for edge
+        # pixels.
         ball = sum(coverage for pixel in range(width * height) for bits, coverage in
                    ranks(channels, "CryptoObject", pixel) if bits == manifest(header, "CryptoObject")["ball"])
         self.assertLess(abs(ball - sum(n == 1 for n in channels["object"])), 0.25 * len(partial))
 
     def test_matte_is_made_of_the_pictures_own_samples(self):
-        """A panel of one radiance L before the dark: each pixel is L times the panel's coverage, whatever the
-        filter and the lens, since both are the same mean of the same samples."""
+        """A panel of one radiance L before black: each pixel is L times the panel's coverage for
+        any filter and lens, because both are the same mean of the same samples."""
         panel = """format = 1
 [[material]]
 name = "panel"
@@ -98,7 +99,7 @@ aperture = 0.1
             self.assertGreater(partial, 40)
 
     def test_names_may_hold_anything(self):
-        odd = 'm\u00e4d"chen \\\\ 1'  # quote and backslash are escaped once more in TOML
+        odd = 'm\u00e4d"chen \\\\ 1'  # TOML escapes quote and backslash once more
         toml = odd.replace('"', '\\"')
         header = self.render(program.BALL.replace('name = "ball"\n', f'name = "{toml}"\n', 1),
                              "--aov", "object,crypto_object")[0]
@@ -128,7 +129,8 @@ aperture = 0.1
                 self.assertAlmostEqual(k[4] * y / depth + k[5], centre[1], delta=1e-4)
                 row = place + [1.0]
                 u, v, _, w = (sum(row[i] * ndc[4 * i + j] for i in range(4)) for j in range(4))
-                self.assertAlmostEqual(u / w * width, centre[0], delta=3e-4)  # the matrix is single precision
+                self.assertAlmostEqual(u / w * width, centre[0], delta=3e-4)  # the matrix is single
+                                                                              # precision
                 self.assertAlmostEqual(v / w * height, centre[1], delta=3e-4)
                 self.assertAlmostEqual(sum(row[i] * camera[4 * i + 2] for i in range(4)), z, delta=1e-5)
             self.assertGreater(seen, width * height / 4)
@@ -140,11 +142,13 @@ aperture = 0.1
     def test_lens_stands_in_the_standard_attributes(self):
         header = self.render(program.BALL, "--set", "camera.A.focus=4", "--set", "camera.A.aperture=0.1")[0]
         self.assertEqual(header["focus"], 4.0)
-        self.assertNotIn("aperture", header)  # there an f-number, which fov_deg does not give
+        self.assertNotIn("aperture", header)  # it would be an f-number, which fov_deg does not
+                                              # define
         self.assertNotIn("focus", self.render(program.BALL)[0])
 
     def test_variance_is_that_of_the_mean(self):
-        """16 and 256 rays are 4 and 16 camera samples: a quarter of the variance, over the picture."""
+        """16 and 256 rays are 4 and 16 camera samples: a quarter of the variance, over the picture.
+        """
         def total(rays):
             return sum(self.render(program.BALL, "--aov", "variance", "--set", "quality.gather=per-sample",
                                    "--set", f"quality.gather_rays={rays}")[3]["variance"])

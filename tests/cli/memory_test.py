@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""--max-memory holds while files and geometry are read, and what a file announces is not believed."""
+"""--max-memory holds while files and geometry are read, and sizes stated in files are not trusted.
+"""
 import os
 import resource
 import struct
@@ -24,7 +25,7 @@ SLACK_MIB = 64
 
 class Memory(program.Case):
     def peak_mib(self, *call, code):
-        """Of this very run: the largest that it ever held."""
+        """Peak memory of this run."""
         with subprocess.Popen([program.PROGRAM, *map(str, call)], cwd=self.folder, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True, preexec_fn=lambda: resource.setrlimit(
                                   resource.RLIMIT_AS, (4 << 30, 4 << 30))) as run:
@@ -54,15 +55,16 @@ class Memory(program.Case):
 
     def test_a_mesh_that_does_not_fit(self):
         with open(self.folder / "a.obj", "wb") as file:
-            file.truncate(400 << 20)  # takes no room on the disk
+            file.truncate(400 << 20)  # sparse: no space on the disk
         self.write("a.toml", program.BALL + '\n[[object]]\nname = "it"\nmesh = "a.obj"\n')
         peak, said = self.peak_mib("inspect", "a.toml", "--max-memory", "100MiB", code=1)
         self.assertLess(peak, 100)
         self.says(said, "a.obj", "--max-memory")
 
     def test_what_was_read_before_leaves_its_room(self):
-        """Files of comments but for a triangle, ever larger, one after the other. The last of 64 MiB, its numbers as much again and
-        the program's 14 are 142 of 160; what the first two of 48 and 56 leave, if it counted, would not leave room for them."""
+        """Files of comments and one triangle, increasingly large, one after the other. The last one
+        of 64 MiB, its numbers of the same size and the program's 14 MiB are 142 of 160. If freed
+        memory of the first two, of 48 and 56, counted, there would not be room."""
         for k, (name, size) in enumerate((("a", 48), ("b", 56), ("c", 64))):
             (self.folder / f"{name}.obj").write_bytes(f"v {3 + k} 0 5\nv {4 + k} 0 5\nv {3 + k} 1 5\nf 1 2 3\n".encode() +
                                                       (b"#" * 63 + b"\n") * (size << 14))

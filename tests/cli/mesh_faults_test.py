@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Meshes as others export them: with a fault the picture is that of the sound mesh, and the fault is named."""
+"""Meshes with faults of exporters: the picture is the one of the sound mesh, and the fault is
+named."""
 import json
 import sys
 import unittest
@@ -48,7 +49,7 @@ def turned(faces):
 
 class MeshFaults(program.Case):
     def picture(self, faces, sheet="", more="", on_floor=""):
-        """(luminances, standard error)"""
+        """(luminances, standard error)."""
         self.write("thing.obj", "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) +
                    "".join("f " + " ".join(str(k + 1) for k in face) + "\n" for face in faces))
         self.write("scene.toml", SCENE.format(sheet=sheet, more=more, on_floor=on_floor))
@@ -61,7 +62,7 @@ class MeshFaults(program.Case):
         for back in (turned(SQUARE), [turned(SQUARE)[0][1:] + turned(SQUARE)[0][:1]]):
             found, said = self.picture(SQUARE + back)
             self.says(said, '"thing"', "back to back")
-            # The floor has another material then, which no pixel can tell: the values are the same.
+            # The floor then has another material, but in pixels the values are equal.
             self.assertLess(max(abs(a - b) for a, b in zip(found, right)), 0.02 * max(right))
             self.assertGreater(sum(found), 0.0)
 
@@ -72,7 +73,7 @@ class MeshFaults(program.Case):
         self.assertEqual(found, right)
 
     def test_a_lamp_lands_what_it_gives(self):
-        """What lands of a lamp, or leaves at once, is what it gives, whatever stands twice."""
+        """A lamp's landed and escaped light add up to its flux, also with duplicate faces."""
         self.picture(CUBE + CUBE[:3])
         for group in self.json("solve", "scene.toml")["groups"]:
             given, landed, escaped = (group[key][1] for key in ("given_lm", "landed_lm", "escaped_at_once_lm"))
@@ -88,7 +89,7 @@ class MeshFaults(program.Case):
         self.assertLess(sum(black), 0.8 * sum(right))
 
     def test_a_paper_that_lies_on_the_floor_is_seen_whole(self):
-        """It was noise of both, in a third of the picture; a millimetre higher it is the paper."""
+        """A paper on a floor in one plane shows the paper, as it does a millimetre higher."""
         paper = ('[[material]]\nname = "dark"\ndiffuse = 0.1\n[[object]]\nname = "paper"\nshape = "quad"\nmaterial = "dark"\n'
                  'corners = [[-1.5, -1.5, {0}], [2, -1.5, {0}], [2, 2, {0}], [-1.5, 2, {0}]]\n')
         right, _ = self.picture(SQUARE, on_floor=paper.format(-0.499))
@@ -121,7 +122,8 @@ class MeshFaults(program.Case):
         self.assertEqual(report["objects"][0]["unused"], "1 Pr, 1 bump, 1 vn, 1 vt; round_deg rounds the surface by the normals")
 
     def read(self, ending, data):
-        """What inspect says of a mesh: its refusal, or its warnings and what is not used of it."""
+        """inspect's messages on a mesh: its refusal, or its warnings and the list of unused
+        features."""
         self.write("thing." + ending, data)
         self.write("scene.toml", SCENE.format(sheet="", more="", on_floor="").replace("thing.obj", "thing." + ending))
         run = self.run_program("inspect", "scene.toml", "--json")

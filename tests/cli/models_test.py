@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The three models of tests/support/models.py, textured and faulty, against answers that are known."""
+"""The three models of tests/support/models.py, textured and faulty, against known answers."""
 import math
 import sys
 import unittest
@@ -77,10 +77,11 @@ class Models(program.Case):
             self.assertAlmostEqual(floor["diffuse"][0], 0.4, delta=0.002)
             wall = self.render("hall.toml", "--camera", "wall", "--error", "0.01")[0]
             means[plain] = sum(wall["G"]) / len(wall["G"])
-        # The squares are a quarter of a metre, the wall is lit by hundreds of them.
+        # The squares are a quarter of a metre; hundreds of them light the wall.
         self.assertAlmostEqual(means[False] / means[True], 1.0, delta=0.01)
-        # 0.75 m about the floor's middle from 6 m above: 16 pixels to a square. u grows with x, v against y;
-        # half a turn of the scale's offset puts a dark square right of u = 1/2 just above the middle.
+        # 0.75 m about the floor's centre from 6 m above: 16 pixels per square. u grows with x, v
+        # against y. The scale's offset of half a period puts a dark square right of u = 1/2 just
+        # above the centre.
         below = self.render("hall.toml", "--camera", "below", "--aov", "albedo", "--no-error")[0]
         for y in range(48):
             for x in range(48):
@@ -105,15 +106,17 @@ class Models(program.Case):
         self.write("grille.toml", OBJECT.format("grille.gltf") + more)
 
     def test_light_comes_through_the_holes_of_a_mask(self):
-        # The Sun over a grating of which half is there: half of the floor is lit. Its 2 m hold 20 squares a side, so
-        # that the mean of what the floor sends is half of what it would send without the grating, and what the
-        # grating casts down on it.
+        # The Sun over a grating with holes over half its area: half of the floor is lit. 2 m have
+        # 20 squares per side. The floor therefore sends half of the light that it would send
+        # without the grating, plus light that the grating reflects down to it.
         self.grille("[sun]\ndirection = [0, 0, 1]\nilluminance = 1000\nangular_radius_deg = 0\n" +
                     self.camera("floor", "[0, 0, 0.9]", "[0, 0, 0]", up="[0, 1, 0]", fov=90, size=64) +
                     self.camera("above", "[0, 0, 9]", "[0, 0, 0]", up="[0, 1, 0]", fov=10, size=64))
         solved = self.json("solve", "grille.toml", "-o", "grille.h5")
         sun, = (g for g in solved["groups"] if g["name"] == "sun")
-        self.assertAlmostEqual(sun["landed_lm"][1] / 1000 / 4, 1.0, delta=0.02)  # 4 m2, on either of the two
+        self.assertAlmostEqual(sun["landed_lm"][1] / 1000 / 4, 1.0, delta=0.02)  # 4 m2, on the
+                                                                                 # floor or the
+                                                                                 # grating
         self.assertLess(sun["imbalance"], 1e-6)
         floor = self.render("grille.toml", "--camera", "floor", "--indirect", "none", "--no-error")[0]
         lit = sum(1 for value in floor["G"] if value > 80) / len(floor["G"])
@@ -132,11 +135,11 @@ class Models(program.Case):
         self.grille(self.camera("screen", "[-2, 0, 1.5]", "[2, 0, 1.5]", fov=13, size=32))
         solved = self.json("solve", "grille.toml")
         screen, = (g for g in solved["groups"] if g["name"] == "screen")
-        # 1 m2, half of it at pi 100 lm/m2.
+        # 1 m2, half of it with pi 100 lm/m2.
         self.assertAlmostEqual(screen["given_lm"][1] / (50 * math.pi), 1.0, delta=0.005)
         seen = self.render("grille.toml", "--camera", "screen", "--no-error")[0]["G"]
         self.assertAlmostEqual(max(seen), 100.0, delta=0.01)
-        # Light at the upper left, as the picture has it.
+        # Bright at the upper left, as in the picture.
         self.assertAlmostEqual(seen[10 * 32 + 10], 100.0, delta=0.01)
         self.assertLess(seen[10 * 32 + 21], 1.0)
         self.assertAlmostEqual(seen[21 * 32 + 21], 100.0, delta=0.01)
@@ -146,7 +149,8 @@ class Models(program.Case):
         report = self.json("inspect", "hall.toml")
         texture, = next(m["textures"] for m in report["materials"] if m["name"] == "floor")
         self.assertEqual((texture["use"], texture["size"]), ("diffuse", [2, 2]))
-        self.assertAlmostEqual(report["texture_mib"] * 2**20, 8 * 4)  # 8 bytes each of 2 x 2 texels
+        self.assertAlmostEqual(report["texture_mib"] * 2**20, 8 * 4)  # 8 bytes for each of 2 x 2
+                                                                      # texels
         self.assertIn("textures", self.json("plan", "hall.toml")["memory"]["parts_mib"])
         self.put(models.crate())
         self.write("crate.toml", OBJECT.format("crate.obj") + "[sun]\ndirection = [-1, -2, 3]\n" +

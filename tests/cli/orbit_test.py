@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""[orbit] as a user meets it: what inspect tells, tables of attitudes, and what is refused."""
+"""[orbit] for users: output of inspect, tables of attitudes, and errors."""
 import math
 import unittest
 
@@ -31,7 +31,7 @@ class Orbit(program.Case):
     def test_inspect_tells_period_and_eclipse(self):
         orbit = self.inspected(ORBIT, "orbit.position_deg=90", "sun.angular_radius_deg=0")["orbit"]
         self.assertAlmostEqual(orbit["time_s"], orbit["period_s"] / 4)
-        # Behind the Earth in its shadow cylinder: 0.387 of the turn at 425 km.
+        # Behind the Earth in its shadow cylinder: 0.387 of the orbit at 425 km.
         umbra = orbit["umbra"]
         self.assertAlmostEqual((umbra["end_deg"] - umbra["begin_deg"]) / 360, 0.387, places=3)
         self.assertAlmostEqual(umbra["begin_s"] / orbit["period_s"], umbra["begin_deg"] / 360)
@@ -46,7 +46,8 @@ class Orbit(program.Case):
     def test_attitudes(self):
         kept = self.inspected(ORBIT, "orbit.attitude=inertial", "orbit.position_deg=60")
         self.assertNear(kept["sun"]["direction"], (0, 0, -1))  # as at noon, bay to the Earth
-        self.assertNear(kept["earth"]["direction"], (math.sin(math.pi / 3), 0, 0.5))  # left behind, aft
+        self.assertNear(kept["earth"]["direction"], (math.sin(math.pi / 3), 0, 0.5))  # behind the
+                                                                                      # orbiter, aft
         self.write("turns.csv", HEAD + "0,0,0,0\n90,0,0,90\n")
         turned = self.inspected(TABLE, "orbit.position_deg=30")
         self.assertNear(turned["earth"]["direction"], (0, 0.5, -math.sqrt(0.75)))

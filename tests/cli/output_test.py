@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is written, and what is left alone when something goes wrong."""
+"""Output files, and files that must be unchanged after an error."""
 import os
 import pty
 import resource
@@ -40,7 +40,8 @@ class Output(program.Case):
         self.assertEqual(png_size((self.folder / "a.png").read_bytes()), (32, 24))
         width, height = png_size((self.folder / "c.png").read_bytes())
         self.assertAlmostEqual(width / height, 4 / 3, delta=0.01)
-        self.assertEqual(self.files(), ["a.exr", "a.png", "ball.toml", "c.png"])  # nothing else stays
+        self.assertEqual(self.files(), ["a.exr", "a.png", "ball.toml", "c.png"])  # no other file
+                                                                                  # remains
 
     def test_folder_that_is_not_there_is_named_before_any_work(self):
         for option in ("-o", "--png", "--cctv"):
@@ -60,7 +61,8 @@ class Output(program.Case):
         self.says(self.refused("render", "ball.toml", "-o", "folder.exr"), "folder")
 
     def test_places_that_may_not_be_looked_into(self):
-        """What is read and may not be: code 2, as the call names it. What is written and may not be: 1. A name that is none: 2."""
+        """Unreadable input: exit code 2, as given in the call. Unwritable output: 1. An invalid
+        name: 2."""
         self.folder.chmod(0o777)
         self.done("render", "ball.toml", "-o", "p.exr", "--size", "8x8")
         for name, mode in (("closed", 0), ("ro", 0o555)):
@@ -97,7 +99,7 @@ class Output(program.Case):
         self.assertEqual((self.folder / "a.exr").read_text(), "old")
 
     def test_interrupted_while_writing(self):
-        """The old picture stays and nothing beside it, whenever the signal comes."""
+        """The old picture remains, without other files, at whatever time the signal arrives."""
         call = [program.PROGRAM, "render", "ball.toml", "-o", "a.exr", "-q", "--size", "768x768", "--indirect",
                 "none", "--set", "quality.gather_rays=1", "--aov", "albedo,normal,position,depth,range"]
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -109,12 +111,12 @@ class Output(program.Case):
                 run.send_signal(number)
             self.assertEqual(self.files(), ["a.exr", "ball.toml"])
             if run.returncode == 0:
-                continue  # it was done before the signal came
+                continue  # it ended before the signal
             self.assertEqual(run.returncode, -number)
             self.assertEqual((self.folder / "a.exr").read_text(), "old")
 
     def test_killed_while_writing(self):
-        """What a killed run leaves is taken over by the next one that writes the file."""
+        """The next run that writes the file removes temporary files of a killed run."""
         call = [program.PROGRAM, "render", "ball.toml", "-o", "a.exr", "-q", "--size", "768x768", "--indirect",
                 "none", "--set", "quality.gather_rays=1", "--aov", "albedo,normal,position,depth,range"]
         left = []
@@ -124,7 +126,7 @@ class Output(program.Case):
                 def parts():
                     try:
                         return [path for path in self.folder.glob(".*.part") if path.stat().st_size > 0]
-                    except FileNotFoundError:  # it has just got its name
+                    except FileNotFoundError:  # it has just been renamed
                         return []
                 while run.poll() is None and not parts():
                     time.sleep(0.002)
@@ -143,7 +145,8 @@ class Output(program.Case):
                 self.assertIn("standard output", run.stderr)
 
     def test_files_beyond_the_limit_on_their_size(self):
-        # SIGXFSZ would end the program with the temporary file left; Python lets it through to its children.
+        # SIGXFSZ would kill the program and leave the temporary file; Python ignores it, also for
+        # children.
         limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))  # noqa: E731
         for call in (["render", "ball.toml", "-o", "a.exr"], ["solve", "ball.toml", "-o", "a.h5"]):
             run = self.run_program(*call, preexec_fn=limit)
@@ -164,7 +167,7 @@ class Output(program.Case):
         master, slave = pty.openpty()
         run = self.run_program("render", "ball.toml", "-o", "a.exr", "--camera", "A", *options,
                                capture_output=False, stdout=subprocess.DEVNULL, stderr=slave)
-        os.write(slave, b".")  # so that there is something to read
+        os.write(slave, b".")  # so that input is available
         os.close(slave)
         text = os.read(master, 1 << 16).decode()
         os.close(master)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""render --over: the scene laid over a photograph."""
+"""render --over: the scene drawn over a photograph."""
 import struct
 import unittest
 import zlib
@@ -42,9 +42,9 @@ class Over(program.Case):
         self.assertEqual([p.name for p in self.folder.iterdir() if p.suffix == ".exr"], [])
 
     def test_the_outline_of_the_ball_is_where_its_picture_is(self):
-        # The ball of radius 0.5 at distance sqrt(9 + 9 + 1.3^2) = 4.44 m is a disc of about
-        # 0.5 / 4.44 x 45 / tan(20 deg) = 13.9 px; the camera looks at 0.3 m below its centre, which
-        # is 0.3 cos(elevation) / 4.5 x 123.6 = 7.9 px up.
+        # The ball of radius 0.5 at distance sqrt(9 + 9 + 1.3^2) = 4.44 m is a disc of about 0.5 /
+        # 4.44 x 45 / tan(20 deg) = 13.9 px. The camera looks 0.3 m below its centre, which is 0.3
+        # cos(elevation) / 4.5 x 123.6 = 7.9 px up.
         before = self.over("--set", "object.floor.translate=[0,0,-100]")
         found = [(k % 120 + 0.5, k // 120 + 0.5) for k, p in enumerate(before) if p[1] > 150 and p[0] < 40]
         self.assertGreater(len(found), 20)

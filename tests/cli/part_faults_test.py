@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What befalls parts of pictures, studies and sequences: killed, out of disk, started twice, of another build, with wrong clocks.
-Nothing is lost, nothing wrong is merged: what comes out at last is what one process writes."""
+"""Faults in parts of pictures, studies and sequences: kills, full disks, duplicate starts, other
+builds, wrong clocks. No result is lost or merged wrongly: the final result equals that by one
+process."""
 import os
 import pathlib
 import random
@@ -17,7 +18,7 @@ from tiny_bay import SMALL_MONITOR
 
 ORBIT = study_parts_test.ORBIT
 SEQUENCE = parts_test.Sequences.CALL
-# The call, the folder of `merge`, and where in it the parts' record lies.
+# The call, the folder for `merge`, and the position of the parts' record in it.
 WORKS = {
     "render": (parts_test.CALL, "v.exr.parts", "."),
     "study": ((*ORBIT, "o"), "o", "points"),
@@ -26,7 +27,7 @@ WORKS = {
 
 
 def other_build(folder):
-    """The program with another build id, as any change of its code or constants gives it."""
+    """The program with another build id, as any change of its code or constants would give."""
     code = pathlib.Path(program.PROGRAM).read_bytes()
     note = b"\x04\0\0\0\x14\0\0\0\x03\0\0\0GNU\0"  # sizes of name and digest, NT_GNU_BUILD_ID
     at = code.index(note) + len(note)
@@ -37,7 +38,7 @@ def other_build(folder):
 
 
 class PartFaults(study_parts_test.StudyPartsCase):
-    alone = {}  # what one process makes of each work
+    alone = {}  # results of each work by one process
 
     def setUp(self):
         super().setUp()
@@ -48,7 +49,7 @@ class PartFaults(study_parts_test.StudyPartsCase):
                       f"sun.illuminance={1000 * 4 ** k}")
 
     def outcome(self, name):
-        """What the work has written; taken away again."""
+        """Output of the work; deletes it."""
         if name == "study":
             found = self.results("o")
             shutil.rmtree(self.folder / "o")
@@ -61,7 +62,7 @@ class PartFaults(study_parts_test.StudyPartsCase):
         return found
 
     def works(self):
-        """Each work, with what one process makes of it, found once for all tests."""
+        """Each work with its results by one process, computed once for all tests."""
         for name, (call, folder, record) in WORKS.items():
             if name not in self.alone:
                 self.done(*call, "-q")
@@ -78,7 +79,7 @@ class PartFaults(study_parts_test.StudyPartsCase):
             self.done(*call, "--part", f"{number}/{of}", "-q")
 
     def test_kills_at_random_moments(self):
-        """Any part, killed at EARTHSHINE_KILLS (ten) moments."""
+        """Each part, killed at EARTHSHINE_KILLS (ten) moments."""
         chance, kills = random.Random(1), int(os.environ.get("EARTHSHINE_KILLS", "10"))
         for name, call, folder, _, whole in self.works():
             killed, begun = 0, time.monotonic()
@@ -91,7 +92,7 @@ class PartFaults(study_parts_test.StudyPartsCase):
                 run.send_signal(signal.SIGKILL)
                 run.wait()
                 killed += run.returncode == -signal.SIGKILL
-                if run.returncode == 0:  # a share that is there would be passed over in no time
+                if run.returncode == 0:  # a finished share would be skipped at once
                     shutil.rmtree(self.folder / folder)
             self.assertGreater(killed, kills // 5)
             self.parts(call, 1, 2, 3, of=3)
@@ -112,7 +113,8 @@ class PartFaults(study_parts_test.StudyPartsCase):
             self.says(self.refused("merge", folder), "the program changed")
             (self.folder / folder / record / "parts.json").unlink()
             self.parts(call, 2)
-            self.says(self.refused("merge", folder, code=1), "--part 1/2")  # the other's work is none
+            self.says(self.refused("merge", folder, code=1), "--part 1/2")  # the other call's work
+                                                                            # does not count
             self.parts(call, 1)
             self.assertEqual(self.merged(name, folder), whole)
 
@@ -125,7 +127,8 @@ class PartFaults(study_parts_test.StudyPartsCase):
             self.assertEqual(self.merged(name, folder), whole)
 
     def test_a_full_disk_in_one_part(self):
-        """No file may grow past its limit of kB: what a full disk is to the one who writes (EFBIG for ENOSPC)."""
+        """No file may grow beyond its limit in kB: for the writer this is a full disk (EFBIG for
+        ENOSPC)."""
         for name, call, folder, _, whole in self.works():
             self.parts(call, 1)
             before = {path: path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}

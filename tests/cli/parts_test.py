@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures and sequences in parts: the bytes of one process, whatever order, number and fate of the parts."""
+"""Pictures and sequences in parts: the bytes of one process, for any order, number and fate of the
+parts."""
 import json
 import os
 import pathlib
@@ -15,7 +16,7 @@ import program
 from program import BALL, Case
 from tiny_bay import SMALL_MONITOR
 
-# Pixels whose samples are told by their neighbours, by the whole picture, by nothing.
+# Pixels whose samples depend on their neighbours, on no other pixel, or on the whole picture.
 WAYS = {
     "shared": ("--set", "quality.gather=shared"),
     "alone": ("--set", "quality.gather=per-sample", "--indirect", "none"),
@@ -36,7 +37,7 @@ class PartCase(Case):
         return {name: (self.folder / name).read_bytes() for name in names}
 
     def whole(self, *more, call=CALL, names=OUTPUTS):
-        """What one process writes; taken away again."""
+        """Output of one process; deletes it."""
         self.done(*call, *more)
         return self.taken(names)
 
@@ -74,7 +75,8 @@ class SameBytes(PartCase):
                     shutil.rmtree(self.folder / "v.exr.parts")
 
     def test_a_picture_that_is_steered_is_one_piece(self):
-        # Rounds of samples follow from the error of all of the picture: rows alone would get others.
+        # Rounds of samples depend on the error of the whole picture: rows alone would get other
+        # rounds.
         way = ("--error", "0.05", "--camera", "A", "-o", "v.exr")
         self.done("render", "ball.toml", *way, "-q")
         whole = (self.folder / "v.exr").read_bytes()
@@ -88,7 +90,7 @@ class SameBytes(PartCase):
         whole = self.whole()
         for part in (1, 2):
             self.done(*CALL, "--part", f"{part}/2", "-q")
-        # With the files that the call reads: it is made there.
+        # With the inputs of the call: the result is written there.
         copy = self.folder / "copy"
         copy.mkdir()
         shutil.copytree(self.folder / "v.exr.parts", copy / "v.exr.parts")
@@ -96,7 +98,7 @@ class SameBytes(PartCase):
         self.done("merge", "copy/v.exr.parts", "-q")
         self.assertEqual({name: (copy / name).read_bytes() for name in OUTPUTS}, whole)
         self.assertFalse(any((self.folder / name).exists() for name in OUTPUTS))
-        # Alone: what it makes is called as it is.
+        # Without inputs: the result has the name of the renamed folder.
         (self.folder / "v.exr.parts").rename(self.folder / "copy/w.exr.parts")
         self.done("merge", "copy/w.exr.parts", "-q")
         self.assertEqual((copy / "w-A.exr").read_bytes(), whole["v-A.exr"])
@@ -122,7 +124,7 @@ class SameBytes(PartCase):
         self.assertEqual(merged, whole)
 
     def test_shares_are_rows_that_fill_the_pictures(self):
-        # 24 rows of A, then 20 of above: 44 in 3 parts are 14, 15 and 15 rows.
+        # 24 rows of A, then 20 of above: 44 rows in 3 parts are 14, 15 and 15.
         for part in (1, 2, 3):
             self.done(*CALL, "--part", f"{part}/3", "-q")
         windows = []
@@ -157,7 +159,7 @@ class SameBytes(PartCase):
         after = solution.stat()
         self.assertEqual((before.st_ino, before.st_mtime_ns), (after.st_ino, after.st_mtime_ns))
         self.assertEqual(self.merged(), self.whole())
-        # One that is whole and stale, and one that is sound but not what the others have read.
+        # A complete but outdated solution, and a valid solution that the other parts have not read.
         mine = solution.read_bytes()
         self.done("solve", "ball.toml", "--seed", "2", "-o", "other.h5", "-q")
         solution.write_bytes((self.folder / "other.h5").read_bytes())
@@ -182,7 +184,7 @@ class SameBytes(PartCase):
 
 
 class Sequences(PartCase):
-    """degrade: the frames of a camera that remembers those before, and of one that does not."""
+    """degrade: frames of a camera with memory of previous frames, and of a camera without."""
     CALL = ("degrade", "0.exr", "1.exr", "2.exr", "-o", "f#.png", "--twin", "t#.exr", "--scene", "ball.toml",
             "--f-number", "4")
     FRAMES = 3
@@ -264,7 +266,7 @@ class Faults(PartCase):
         self.assertEqual(self.merged(), whole)
 
     def test_a_disk_that_is_full(self):
-        """ENOSPC of a file system in memory that is filled up while a part is away."""
+        """ENOSPC by a memory file system that is filled while a part is missing."""
         script = """set -e
 mount -t tmpfs -o size=4m tmpfs full; cp ball.toml full; cd full
 "$@" --part 1/2 -q

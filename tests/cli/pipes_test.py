@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pipes and devices, as inputs and outputs: nothing waits for ever, nothing is read without end."""
+"""Pipes and devices as inputs and outputs: no command blocks for ever or reads without end."""
 import os
 import signal
 import subprocess
@@ -15,7 +15,7 @@ GLTF = """{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], 
 "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
 "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"uri": "pipe", "byteLength": 36}]}"""
 OBJECT = "\n[[object]]\nname = \"it\"\nmesh = \"{}\"\n"
-WAIT_S = 20  # of a busy machine; the program waited for ever
+WAIT_S = 20  # for a busy machine; a blocked program would wait for ever
 
 
 class Pipes(program.Case):
@@ -98,11 +98,11 @@ class Pipes(program.Case):
             run.wait(timeout=WAIT_S)
         finally:
             run.kill()
-        self.assertLess(time.monotonic() - start, 5.0, call)  # a second, on a machine that is free
+        self.assertLess(time.monotonic() - start, 5.0, call)  # a second on an idle machine
         self.assertNotEqual(run.returncode, 0)
 
     def test_end_is_at_once_where_nobody_reads(self):
-        """A pipe that is full keeps the writer waiting; SIGTERM ends that within a second."""
+        """A full pipe blocks the writer; SIGTERM ends it within a second."""
         read_end, write_end = os.pipe()
         os.set_blocking(write_end, False)
         try:
@@ -112,7 +112,7 @@ class Pipes(program.Case):
             pass
         os.set_blocking(write_end, True)
         render = ["render", "ball.toml", "-o", "a.exr", "--json"]
-        # With a camera the first note comes when the picture is there.
+        # With a camera the first note comes with the picture.
         for stream, call in (("stdout", render), ("stderr", render), ("stderr", [*render, "--camera", "A"]),
                              ("stdout", ["inspect", "ball.toml"])):
             streams = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL} | {stream: write_end}

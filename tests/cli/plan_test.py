@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""plan: each effect's row, and the key or fact that decided about it."""
+"""plan: the row of each effect, and the key or fact that decides about it."""
 import unittest
 
 import program
@@ -23,7 +23,7 @@ SPOT = lamp("spot", "position = [0, 0, 2]\naim = [0, 0, 0]\nintensity = {}\nbeam
 DISK = lamp("disk", "center = [0, 0, 2]\nnormal = [0, 0, -1]\nradius = 0.1\nexitance = {}")
 RECTANGLE = lamp("rectangle", "center = [0, 0, 2]\nedge_u = [1, 0, 0]\nedge_v = [0, -1, 0]\nexitance = {}")
 
-# What the ball's scene has added, the call, and the row: effect, whether it runs, what it must say.
+# Additions to the ball's scene, the call, and the row: effect, whether it runs, required text.
 ROWS = [
     ("", [], "interreflection", True, '"floor" has diffuse > 0'),
     ("", ["--indirect", "none"], "interreflection", False, "straight from the sources"),
@@ -106,7 +106,7 @@ class Plan(program.Case):
         self.assertEqual(len(names), len(set(names)))
 
     def test_every_stage_says_which_settings_decide(self):
-        """One that can be off names a setting; the settings named are those that turn it on or off."""
+        """An effect that can be off names a setting; the named settings switch it on or off."""
         listed = self.done("degrade", "--list").split("stages, in order\n")[1].split("\n\n")[0]
         stages = [line.split()[0] for line in listed.splitlines() if line.startswith("  ")]
         self.assertGreater(len(stages), 20)
@@ -124,7 +124,7 @@ class Plan(program.Case):
                 self.assertEqual({runs for runs, _ in rows}, {True}, name)
             else:
                 self.assertTrue(all(" is " in why for _, why in rows), name)
-            # The same settings, the same decision.
+            # The same settings give the same decision.
             self.assertEqual(len(rows), len({why for _, why in rows}), name)
 
     def test_cameras_and_sizes_are_those_of_the_call(self):
@@ -149,9 +149,9 @@ class Plan(program.Case):
         self.assertNotIn("may not fit", self.done(*call))
 
     def test_ranks(self):
-        """Seconds as docs/scaling.md has it, t (s + (1 - s) / R) + b / W, with the seconds of one process at R = 1. Of memory the
-        entries of the matrix are divided, and the first rank alone has the vectors of the linear solve: together they need what the
-        first and the others do."""
+        """Seconds as in docs/scaling.md, t (s + (1 - s) / R) + b / W, with the seconds of one
+        process at R = 1. The entries of the matrix are divided between ranks; the vectors of the
+        linear solve are on rank 0 only. Memory in all is that of rank 0 plus that of the others."""
         self.write("scene.toml", program.BALL)
         self.assertNotIn("ranks", self.json("plan", "scene.toml"))
         stated = {}
@@ -170,7 +170,7 @@ class Plan(program.Case):
             stated[count] = (each, others)
             whole = plan["expected"]["seconds"]
             self.assertAlmostEqual(ranks["shared_seconds"] + ranks["unshared_seconds"], whole, delta=1e-9 * whole)
-            self.assertGreater(ranks["unshared_seconds"], 0)  # ledger
+            self.assertGreater(ranks["unshared_seconds"], 0)  # energy ledger
             self.assertEqual(ranks["exchanged_bytes"] > 0, count > 1)
             expected = (ranks["unshared_seconds"] + ranks["shared_seconds"] / count
                         + ranks["exchanged_bytes"] / ranks["network_bytes_per_second"])
@@ -178,7 +178,7 @@ class Plan(program.Case):
         for each, others in (stated[2], stated[64]):
             self.assertLess(others, each)
         self.assertLess(stated[64], stated[2])
-        # Nothing is solved: pixels alone go round, 24 bytes each, and all of it is shared.
+        # Without a solve only pixels are exchanged, 24 bytes each, and all work is shared.
         ranks = self.json("plan", "scene.toml", "--indirect", "none", "--ranks", "2")["ranks"]
         self.assertEqual((ranks["exchanged_bytes"], ranks["unshared_seconds"]), (24 * (32 * 24 + 20 * 20), 0))
         self.assertIn("MiB in the first rank, ", self.done("plan", "scene.toml", "--ranks", "4"))

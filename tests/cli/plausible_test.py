@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Input that is surely a mistake: one warning each, the same at every command that uses it, and in the reports."""
+"""Input that is certainly a mistake: one warning each, equal in every command that uses it and in
+reports."""
 import json
 import unittest
 
 import program
 
-# A housing around a lamp, as luminaires have it: every ray from the lamp ends on a black back.
+# A housing around a lamp, as in luminaires: every ray from the lamp ends on a black back.
 HOUSING = """
 [[object]]
 name = "housing"
@@ -19,7 +20,7 @@ SHUT_IN = 'all light of lamp "lamp" ends on the black back of the object "housin
 
 class Plausible(program.Case):
     def warned(self, *arguments, code=(0, 3)):
-        """The warnings of a call, on standard error or in its text."""
+        """Warnings of a call, on standard error or in its text."""
         run = self.run_program(*arguments)
         self.assertIn(run.returncode, code, run.stderr)
         lines = (run.stderr + run.stdout).splitlines()
@@ -59,14 +60,14 @@ class Plausible(program.Case):
     def test_the_sun_behind_the_earth_is_said_where_it_would_shine(self):
         scene = program.BALL.split("[sun]")[0] + "[[camera]]" + program.BALL.split("[[camera]]", 1)[1]
         self.write("s.toml", scene + "\n[orbit]\naltitude_km = 400\nposition_deg = 180\n")
-        self.assertEqual(self.warned("solve", "s.toml"), [])  # a night with lamps is meant
+        self.assertEqual(self.warned("solve", "s.toml"), [])  # a night with lamps is intentional
         self.write("s.toml", scene + "\n[orbit]\naltitude_km = 400\nposition_deg = 109.7\n")
         hidden = "of the Sun; take another position_deg"
         for call in (("render", "s.toml", "--camera", "A", "-o", "o.exr", "--no-error"), ("solve", "s.toml"),
                      ("study", "visibility", "s.toml", "-o", "v", "--size", "8x8")):
             self.assertEqual(len([line for line in self.warned(*call) if hidden in line]), 1, call)
         self.says((self.folder / "v" / "report.html").read_text("utf-8"), hidden)
-        # Along the orbit there is a night; inspect says of each light whether it shines.
+        # The orbit has a night; inspect reports for each light whether it shines.
         self.assertEqual(self.warned("study", "orbit", "s.toml", "--positions", "2", "-o", "w", "--size", "8x8"), [])
         self.assertEqual(self.warned("inspect", "s.toml"), [])
 
@@ -83,7 +84,7 @@ class Plausible(program.Case):
                             for line in self.warned("study", "run", "study.toml", "-o", "w")))
 
     def test_a_view_of_backs_is_said_by_render_and_the_report(self):
-        # Seen from below, the floor is all back.
+        # From below, the floor shows only its back.
         scene = program.BALL.replace("position = [0, 0, 6]", "position = [0, 0, -3]")
         self.write("s.toml", scene)
         said = self.warned("render", "s.toml", "--camera", "above", "-o", "o.exr", "--no-error")
@@ -104,7 +105,8 @@ class Plausible(program.Case):
         self.assertEqual(report["objects"][0]["bounds"], {"min_m": [-2, -2, 0], "max_m": [2, 2, 0]})
         pairs = report["crossings"]["pairs"]
         self.assertEqual([pair["objects"] for pair in pairs], [["floor", "ball"]])
-        # A ball of 12 segments, 0.5 m, cut 0.3 m under its middle: a dodecagon about the circle of 0.4 m.
+        # A ball of 12 segments, 0.5 m, cut 0.3 m below its centre: a dodecagon about the circle of
+        # 0.4 m.
         self.assertAlmostEqual(pairs[0]["line_m"], 2 * 3.14159 * 0.4, delta=0.1 * 2 * 3.14159 * 0.4)
         self.says(self.done("inspect", "s.toml"), "bounds", "floor and ball run through one another")
         self.write("apart.toml", program.BALL)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads the 8-bit PNG files that the program writes, with Python's own zlib."""
+"""Reads the program's 8-bit PNG files with Python's zlib."""
 import struct
 import zlib
 
 
 def paeth(a, b, c):
-    """Of left a, above b and above left c the nearest to a + b - c (PNG specification, 9.4)."""
+    """Of left a, above b and above left c, the nearest to a + b - c (PNG specification, 9.4)."""
     p = a + b - c
     return min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Gaps, steps and distances from 1 mm to 10 000 km: single precision near a surface decides, not the scene's size."""
+"""Gaps, steps and distances from 1 mm to 10 000 km: single precision near a surface matters, not
+the scene's size."""
 import math
 import unittest
 
@@ -27,8 +28,8 @@ def box(name, low, high):
 
 class Precision(program.Case):
     def test_a_gap_of_5_mm_beside_a_satellite(self):
-        """Squares of 1 m, one of which shines 1000 lm/m2: F = 0.99012 by the closed form, E = 1000 F / (1 - 0.25 F^2) = 1312 lx
-        on the other, to 0.1 % (evenly bright squares)."""
+        """Squares of 1 m, one of which emits 1000 lm/m2: F = 0.99012 by the closed form, E = 1000 F
+        / (1 - 0.25 F^2) = 1312 lx on the other, to 0.1 % (uniform squares)."""
         gap = quad("lo", "panel", [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]) + quad(
             "hi", "w", [[0, 0, 0.005], [0, 1, 0.005], [1, 1, 0.005], [1, 0, 0.005]])
         for place in (None, (0, 0, 2000), (1200, -900, 1500), (8000, 5000, 3000)):
@@ -38,7 +39,8 @@ class Precision(program.Case):
             self.assertAlmostEqual(objects["hi"]["illuminance_lx"][1], 1312, delta=30, msg=str(place))
 
     def test_the_shadow_of_a_step_of_1_mm(self):
-        """h / tan 5 degrees = 11.43 mm. Pixels of 0.5 mm: 20 mm of the picture lie left of the step."""
+        """h / tan 5 degrees = 11.43 mm. Pixels of 0.5 mm: 20 mm of the picture are left of the
+        step."""
         for half in (1, 50, 5000):
             self.write("s.toml", MATERIALS + quad("plane", "w", [[-half, -half, 0], [half, -half, 0], [half, half, 0], [-half, half, 0]]) +
                        box("slab", (0, -0.5, 0), (0.5, 0.5, 0.001)) +
@@ -53,7 +55,7 @@ class Precision(program.Case):
             self.assertAlmostEqual(shadow_mm, 1 / math.tan(math.radians(5)), delta=0.25, msg=f"plane of {2 * half} m")
 
     def test_a_camera_far_away(self):
-        """A field of 1 m, whatever the distance: the same picture, both objects in it."""
+        """A field of 1 m at any distance: the same picture with both objects."""
         means = []
         for away in (10, 3e5, 1e7):
             self.write("s.toml", MATERIALS + quad("p", "w", [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]) +
@@ -65,7 +67,7 @@ class Precision(program.Case):
             self.assertGreater(min(values), 0.0, away)
             means.append(sum(values) / len(values))
         for mean in means[1:]:
-            self.assertAlmostEqual(mean, means[0], delta=0.02 * means[0])  # seen from 10 m in perspective
+            self.assertAlmostEqual(mean, means[0], delta=0.02 * means[0])  # 10 m has visible perspective
         self.assertAlmostEqual(means[2], means[1], delta=0.005 * means[1])
 
 

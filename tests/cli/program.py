@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the built program in a folder of its own, and the small scenes that the cases share."""
+"""Runs the built program in a temporary folder; small scenes of the tests."""
 import json
 import os
 import pathlib
@@ -10,7 +10,7 @@ import unittest
 PROGRAM = os.environ["EARTHSHINE_PROGRAM"]
 TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 
-# A closed room: every patch has radiosity M / (1 - rho). The walls emit, so there is no other source.
+# A closed room: every patch has radiosity M / (1 - rho). Only the walls emit.
 CLOSED_BOX = """format = 1
 name = "closed box"
 unit = "m"
@@ -42,7 +42,7 @@ form_factor_rays = 64
 gather_rays = 16
 """
 
-# 100 cd every way below, and a lamp with that light over the ball's floor.
+# 100 cd in all directions below, and a lamp with this light above the ball's floor.
 EVEN_IES = """IESNA:LM-63-2002
 [LUMINAIRE] even
 TILT=NONE
@@ -125,7 +125,7 @@ gather_rays = 16
 
 
 class Case(unittest.TestCase):
-    """A test with a folder of its own; the program runs in it."""
+    """A test with a temporary folder, in which the program runs."""
 
     def setUp(self):
         self._folder = tempfile.TemporaryDirectory(prefix="earthshine cli ")  # with blanks
@@ -146,8 +146,8 @@ class Case(unittest.TestCase):
                               **({"capture_output": True, "text": True} | more))
 
     def done(self, *arguments, code=0):
-        """Runs, demands exit 0 (3: short of the error that the call asks for), gives standard output. code: a number or
-        several."""
+        """Runs the program and returns standard output. Requires exit code `code`, a number or
+        several: 0, or 3 (wanted error not reached)."""
         run = self.run_program(*arguments)
         self.assertIn(run.returncode, code if isinstance(code, tuple) else (code,), f"{arguments}: {run.stderr}")
         return run.stdout
@@ -157,7 +157,8 @@ class Case(unittest.TestCase):
                           parse_constant=lambda word: self.fail(f"{word} in the JSON"))
 
     def refused(self, *arguments, code=2):
-        """Runs, demands the exit code, one message with the program's name, nothing on stdout."""
+        """Runs the program. Requires the exit code, one message with the program's name, and no
+        standard output."""
         run = self.run_program(*arguments)
         self.assertEqual(run.returncode, code, f"{arguments}: {run.stdout}{run.stderr}")
         self.assertEqual(run.stdout, "")
@@ -166,7 +167,7 @@ class Case(unittest.TestCase):
         return message
 
     def work_memory(self, scene, mib):
-        """--max-memory that leaves the work so much, beside the program as plan prices it."""
+        """--max-memory that leaves so much for the work, beyond plan's figure for the program."""
         of_program = self.json("plan", scene)["memory"]["parts_mib"]["program"]
         return "--max-memory", f"{of_program + mib:.2f}MiB"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""render --range: what a range sensor reports."""
+"""render --range: readings of a range sensor."""
 import math
 import unittest
 
@@ -39,8 +39,8 @@ class Range(program.Case):
         self.assertEqual(header["earthshine:range_sensor"], "lidar")
         self.assertAlmostEqual(header["earthshine:noise_m_per_m2"], 0.0005, places=9)
         self.assertIn("earthshine:camera.K", header)
-        # Each error over its own deviation: mean 0, variance 1 with standard error sqrt(2/n); the step of
-        # 1 mm adds q^2/12.
+        # Each error over its deviation: mean 0, variance 1 with standard error sqrt(2/n); the step
+        # of 1 mm adds q^2/12.
         scaled = [(sensed - true) / math.hypot(0.003 + 0.0005 * true**2, 0.001 / math.sqrt(12))
                   for true, sensed, valid in zip(exact, channels["range"], channels["valid"]) if valid]
         count = len(scaled)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ranks of Open MPI write what one process writes. Skipped where earthshine-mpi was not built or mpirun is not there."""
+"""Ranks of Open MPI write the output of one process. Skipped without earthshine-mpi or mpirun."""
 import contextlib
 import json
 import os
@@ -17,12 +17,12 @@ from program import BALL, CLOSED_BOX
 from tiny_bay import PLAIN_BAY, Case
 
 MPI = pathlib.Path(program.PROGRAM).with_name("earthshine-mpi")
-# More ranks than cores, in a container, as root; no launching by ssh.
+# More ranks than cores, in a container, as root; without ssh.
 ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                             "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_plm": "isolated",
                             "OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_btl_base_warn_component_unused": "0"}
-# White walls (all that a closed part keeps must be looked for), a mirror (hits that are no whole numbers), a box that covers part
-# of the floor, and so few rays that hits are borrowed and filled in.
+# White walls (closed parts without absorption must be found), a mirror (fractional hits), a box
+# that covers part of the floor, and so few rays that hits are borrowed and filled in.
 HARD = CLOSED_BOX.replace("diffuse = 0.5", "diffuse = 1.0").replace("form_factor_rays = 64", "form_factor_rays = 8") + """
 [[material]]
 name = "half a mirror"
@@ -44,10 +44,10 @@ min = [0.3, 0.3, 0]
 max = [0.8, 0.8, 0.5]
 material = "half a mirror"
 """
-# Open with shadows and two light groups; closed, lit by its walls.
-# Nothing set: cut, and sampled in passes, until an error is reached.
+# An open scene with shadows and two light groups; a closed one, lit by its walls; one without
+# settings, refined and sampled in passes until an error is reached.
 FREE = BALL.replace("patch_edge = 0.5\nform_factor_rays = 64\n", "")
-# A slit to a wide Sun: its penumbrae take many turns of cuts.
+# A slit to a wide Sun: its penumbrae need many rounds of refinement.
 SLIT = """format = 1
 name = "slit"
 unit = "m"
@@ -98,7 +98,8 @@ class OfRanks(Case):
         return run
 
     def same(self, call, names, counts):
-        """Files, and what `--json` prints but for seconds and what of them follows, and for memory."""
+        """Files, and the output of `--json` without memory, seconds and values that depend on them.
+        """
         said = without_times(self.done(*call, "-q"))
         whole = {name: (self.folder / name).read_bytes() for name in names}
         for count in counts:
@@ -106,20 +107,20 @@ class OfRanks(Case):
                 (self.folder / name).unlink()
             with self.subTest(call[0], ranks=count):
                 run = self.ranks(count, *call, "-q", "-j", 1 + count % 2)
-                self.assertLessEqual(run.stdout.count("light group"), 1)  # one rank speaks
+                self.assertLessEqual(run.stdout.count("light group"), 1)  # one rank writes messages
                 self.assertEqual(without_times(run.stdout), said)
                 for name in names:
                     self.assertEqual((self.folder / name).read_bytes(), whole[name], name)
                 self.assertEqual([p.name for p in self.folder.iterdir() if p.name.startswith(".")], [])
 
     def without_program(self, study):
-        """earthshine-mpi is another program than earthshine, and study.json says so."""
+        """earthshine-mpi is another program than earthshine, which study.json records."""
         return {key: value for key, value in self.without_times(study).items() if key not in ("build", "provenance")}
 
     def started(self, count, *arguments):
-        """mpirun, and the ranks as soon as all are there."""
+        """mpirun, and the ranks as soon as all exist."""
         run = subprocess.Popen(["mpirun", "-n", str(count), MPI, *arguments, "-j", "1"], cwd=self.folder,
-                               env=ENVIRONMENT | {"PMIX_MCA_gds": "hash"},  # or mpirun may never come to its end (docs/cluster.md)
+                               env=ENVIRONMENT | {"PMIX_MCA_gds": "hash"},  # otherwise mpirun may not end (docs/cluster.md)
                                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         self.addCleanup(run.stderr.close)
         self.addCleanup(run.kill)
@@ -137,14 +138,15 @@ class OfRanks(Case):
 
 class Results(OfRanks):
     def test_solutions(self):
-        # Loops over patches go in chunks of 256; a single chunk is nobody's to share.
+        # Loops over patches have chunks of 256; a single chunk is not shared.
         fine = ("--set", "quality.patch_edge=0.1")
         for scene, more, counts in (("ball.toml", fine, (1, 2, 3, 5, 8)), ("box.toml", fine, (3,)), ("free.toml", ("--error", "0.1"), (2, 5)),
                                     ("slit.toml", ("--error", "0.1"), (2,)), ("hard.toml", ("--set", "quality.patch_edge=0.2"), (1, 2, 3, 5, 8))):
             self.same(("solve", scene, "-o", "s.h5", "--json", *more), ("s.h5",), counts)
 
     def test_rows_that_need_each_other(self):
-        """More ranks than the 16 bands in which columns are summed too: some then have a part of a band alone."""
+        """More ranks than the 16 bands in which columns are summed: some ranks then share a band.
+        """
         call = ("solve", "hard.toml", "-o", "s.h5", "--set", "quality.patch_edge=0.1")
         report = json.loads(self.done(*call, "--json", "-q"))
         balance = report["balance"]
@@ -175,7 +177,7 @@ class Results(OfRanks):
             self.assertEqual(*(self.without_program(self.study(folder)) for folder in (f"o{count}", "w")))
             for path in (self.folder / "w" / "pictures").iterdir():
                 self.assertEqual((self.folder / f"o{count}" / "pictures" / path.name).read_bytes(), path.read_bytes())
-        run = self.ranks(2, "study", "visibility", "bay.toml", "-o", "j", "--size", "8x8", "--json")  # the merge alone reports
+        run = self.ranks(2, "study", "visibility", "bay.toml", "-o", "j", "--size", "8x8", "--json")  # only the merge reports
         self.assertEqual(json.loads(run.stdout)["study"], "visibility")
         self.assertNotIn("--json has no effect", run.stderr)
 
@@ -183,9 +185,10 @@ class Results(OfRanks):
 
 class Faults(OfRanks):
     def test_ranks_that_differ(self):
-        """Another scene, setting or mesh with one rank: the others waited for ever, or wrote a picture of both."""
+        """Another scene, setting or mesh on one rank is an error: the ranks could block or mix two
+        pictures."""
         (self.folder / "there").mkdir()
-        (self.folder / "out").mkdir()  # the first rank's alone
+        (self.folder / "out").mkdir()  # only for rank 0
         call = [MPI, "render", "ball.toml", "--camera", "A", "-o", "out/v.exr", "-q"]
         for what, text, more in (("ball.toml", BALL.replace("radius = 0.5", "radius = 0.4"), []),
                                  ("ball.toml", BALL + "# a word more\n", []), ("the call", BALL, ["--seed", "2"])):
@@ -196,12 +199,12 @@ class Faults(OfRanks):
             self.assertEqual(run.stderr.count("earthshine: "), 1, run.stderr)
             self.says(run.stderr, f"rank 0: {what} is not what rank 2 of 3 has")
             self.assertEqual(list((self.folder / "out").iterdir()), [])
-        study = [MPI, "study", "orbit", "bay.toml", "-o", "out", "--positions", "3", "--iris", "normal"]  # one would have waited for ever
+        study = [MPI, "study", "orbit", "bay.toml", "-o", "out", "--positions", "3", "--iris", "normal"]  # one rank would block
         run = subprocess.run(["mpirun", "-n", "1", *study, ":", "-n", "1", *study, "--part", "solve"], cwd=self.folder, env=ENVIRONMENT,
                              capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=60, check=False)
         self.assertEqual(run.returncode, 2, run.stderr)
         self.says(run.stderr, "rank 0: --part is not what rank 1 of 2 has")
-        self.write("there/ball.toml", BALL)  # how many threads and how much memory is each machine's own
+        self.write("there/ball.toml", BALL)  # threads and memory may differ between machines
         subprocess.run(["mpirun", "-n", "1", *call, "-j2", ":", "-n", "1", "--wdir", "there", *call, "-j1", "--max-memory", "4GiB"],
                        cwd=self.folder, env=ENVIRONMENT, stdin=subprocess.DEVNULL, timeout=60, check=True)
 
@@ -216,7 +219,8 @@ class Faults(OfRanks):
     def test_a_rank_that_dies_ends_the_run(self):
         run, ranks = self.started(3, "render", "ball.toml", "--camera", "A", "-o", "v.exr", "--indirect", "paths",
                                   "--set", "quality.gather_rays=65536")
-        # Open MPI has other words for a process that dies before it has joined; joining takes 0.1 s.
+        # Open MPI has another message for a process that dies before it has joined; joining takes
+        # 0.1 s.
         while self.processor_seconds(ranks[1]) < 1.0:
             time.sleep(0.05)
         os.kill(int(ranks[1]), 9)
@@ -226,7 +230,7 @@ class Faults(OfRanks):
         self.assertFalse((self.folder / "v.exr").exists())
 
     def test_a_signal_to_one_rank_ends_all(self):
-        """One process ends its picture at the first of it; ranks would not stop at the same place."""
+        """One process ends its picture at a signal; ranks would stop at different places."""
         run, ranks = self.started(2, "render", "ball.toml", "--camera", "A", "-o", "v.exr", "--indirect", "paths",
                                   "--set", "quality.gather_rays=65536")
         while self.processor_seconds(ranks[1]) < 1.0:
@@ -237,7 +241,8 @@ class Faults(OfRanks):
         self.assertEqual([path.name for path in self.folder.iterdir() if "v.exr" in path.name], [])
 
     def test_a_full_disk(self):
-        """A file system in memory with room for one page: the first rank alone writes there, says so and ends the others."""
+        """A memory file system with room for one page: only rank 0 writes to it; it reports the
+        error and ends the others."""
         mounts = ["unshare", "--user", "--map-root-user", "--mount"]
         (self.folder / "full").mkdir()
         if subprocess.run([*mounts, "mount", "-t", "tmpfs", "tmpfs", "full"], cwd=self.folder, capture_output=True,
@@ -256,7 +261,8 @@ code=$?; ls -A full; cat full/v.exr; exit $code"""
 
 class Machines(OfRanks):
     def test_one_solution_for_parts(self):
-        """Ranks work on the one solution that parts read, by --part solve or ahead of their own shares."""
+        """Ranks use the one solution that parts read, by --part solve or before their own shares.
+        """
         call = ("study", "orbit", "bay.toml", "--positions", "17", "--iris", "normal", "--wanted", "box>=0.5", "-q", "-o")
         for folder, run in (("w", lambda: self.ranks(1, *call, "w", "--part", "solve")),
                             ("a", lambda: self.ranks(3, *call, "a", "--part", "solve")), ("b", lambda: self.ranks(3, *call, "b"))):
@@ -272,10 +278,12 @@ class Machines(OfRanks):
         self.assertIn("does not go with ranks", self.ranks(2, *call, "a", "--part", "1/2", code=2).stderr)
 
     def test_memory_is_divided(self):
-        """Of the E entries of the matrix, 8 bytes each, a rank of R has an R-th; while they are dealt out up to half as much more, of
-        rows that it has cast and others will have, beside a sixteenth of all in one process: 8 E (17/16 - 3/2 / R) bytes are spared
-        it, which `plan` says but for 12 MiB of Open MPI. Which rank casts which rows is chance: on a busy machine one has up to a quarter
-        of all entries more, so that of two nothing is sure to be spared, and of eight the rest."""
+        """The E entries of the matrix have 8 bytes each; one of R ranks has E / R of them. During
+        their distribution it has up to half as much again, for rows that it has cast for others,
+        while one process needs an additional sixteenth. A rank therefore saves 8 E (17/16 - 3/2 /
+        R) bytes, which `plan` states up to 12 MiB of Open MPI. Rows are cast dynamically: on a busy
+        machine one rank has up to a quarter of all entries more, so that with two ranks the saving
+        is uncertain."""
         call = ("solve", "box.toml", "-o", "s.h5", "--set", "quality.patch_edge=0.04", "--set", "quality.form_factor_rays=1024")
         reports, peaks = {}, {}
         for count in (1, 2, 8):
@@ -297,11 +305,12 @@ class Machines(OfRanks):
             self.assertAlmostEqual(stated[0] - stated[1], spared, delta=16)
 
     def test_two_machines(self):
-        """Two daemons of Open MPI under names of their own, two ranks each, which have TCP between them and share no memory."""
+        """Two daemons of Open MPI under separate host names with two ranks each: TCP between them,
+        no shared memory."""
         if subprocess.run(["unshare", "--uts", "--user", "--map-root-user", "hostname", "one"], capture_output=True,
                           check=False).returncode != 0:
             self.skipTest("no host can be given another name here")
-        reach = self.folder / "reach"  # in the place of ssh HOST COMMAND
+        reach = self.folder / "reach"  # replaces ssh HOST COMMAND
         reach.write_text('#!/bin/sh\nhost=$1; shift\nexec unshare --uts --user --map-root-user sh -c "hostname $host; $*"\n')
         reach.chmod(0o755)
         there = {"OMPI_MCA_plm": "rsh", "OMPI_MCA_plm_rsh_agent": "reach", "OMPI_MCA_oob_tcp_if_include": "lo",
@@ -316,13 +325,14 @@ class Machines(OfRanks):
             self.assertEqual((self.folder / name).read_bytes(), whole)
         said = self.ranks(4, *call, "-o", name, "--max-memory", "40MiB", code=1, mpirun=hosts, environment=there).stderr
         self.says(said, "20 MiB are allowed by --max-memory for each of 2 ranks on this machine")
-        # The counter of tiles cannot be had there by what shares memory.
+        # A component for shared memory cannot reach the counter of tiles on the other host.
         said = self.ranks(4, *call, "-o", name, code=1, mpirun=hosts, environment=there | {"OMPI_MCA_osc": "sm"}).stderr
         self.assertEqual(said.count("earthshine: "), 1, said)
         self.says(said, "has no component osc for these machines", "--mca osc ^ucx")
 
     def test_ranks_share_the_memory_of_a_machine(self):
-        """What one rank is allowed alone, two are refused together, before they cast a ray; of more they take what they state."""
+        """A limit that suffices for one rank is refused for two, before they cast a ray; with a
+        larger limit they use the stated memory."""
         call = ("solve", "box.toml", "--set", "quality.patch_edge=0.06", "--set", "quality.form_factor_rays=1024", "-q", "-j", 1)
         plan = {count: json.loads(self.done("plan", "box.toml", *call[2:6], "--ranks", count, "--json"))["ranks"] for count in (1, 2)}
         enough = 1.02 * plan[1]["memory_mib_all"]
@@ -339,7 +349,8 @@ class Machines(OfRanks):
         self.assertEqual((self.folder / "v.exr").read_bytes(), whole)
 
     def test_processes_of_srun_that_are_alone(self):
-        """srun without --mpi=pmix: nothing but SLURM_STEP_NUM_TASKS says that there are others. mpirun of one is one."""
+        """srun without --mpi=pmix: only SLURM_STEP_NUM_TASKS shows that there are other processes.
+        mpirun with one process is a single process."""
         call = ("inspect", "ball.toml")
         run = subprocess.run([MPI, *call], cwd=self.folder, env=os.environ | {"SLURM_STEP_NUM_TASKS": "4"},
                              capture_output=True, text=True, check=False)
@@ -351,19 +362,20 @@ class Machines(OfRanks):
 
     def test_a_plan_is_made_once(self):
         plan = self.ranks(2, "study", "orbit", "bay.toml", "-o", "o", "--positions", "3", "--dry-run", "--json").stdout
-        self.assertTrue(json.loads(plan)["dry_run"])  # two would be no JSON
+        self.assertTrue(json.loads(plan)["dry_run"])  # two documents would be invalid JSON
         self.assertFalse((self.folder / "o").exists())
 
     def test_one_rank_writes_to_a_device(self):
-        """Three wrote a picture each, one after another."""
+        """Without this error each of the three processes would write the picture."""
         call = ("render", "box.toml", "--no-error", "-q", "-o", "a.exr", "--png", "/dev/stdout")
         run = subprocess.run(["mpirun", "-n", "3", MPI, *call], cwd=self.folder, env=ENVIRONMENT, stdin=subprocess.DEVNULL,
                              capture_output=True, timeout=300, check=True)
         self.assertEqual(run.stdout, self.run_program(*call, text=False).stdout)
 
     def test_work_goes_to_whoever_is_free(self):
-        """Two ranks of one thread share W = W1 + W2 CPU seconds of a picture. One is stopped while the other works for W: it
-        has nothing left to do then, where rows dealt out beforehand would leave it all of its half."""
+        """Two ranks of one thread share W = W1 + W2 CPU seconds of a picture. One is stopped while
+        the other works for W. It then has no work left; a static division would leave it all of its
+        half."""
         call = ("render", "ball.toml", "--camera", "A", "-o", "v.exr", "--indirect", "paths", "-q", "--set",
                 "quality.gather_rays=8192")
         begun = os.times()
@@ -386,14 +398,15 @@ class Machines(OfRanks):
             time.sleep(0.01)
         self.assertEqual(run.returncode, 0)
         self.assertEqual((self.folder / "v.exr").read_bytes(), whole)
-        # Half of the work would be 0.4 W more than it had; one row and the file's encoding are less than 0.2 W.
+        # Half of the work would be 0.4 W more; one row and the encoding of the file are less than
+        # 0.2 W.
         self.assertLess(at_end - at_stop, 0.2 * work)
 
 
 class Kills(OfRanks):
     def test_kills_of_solve_and_render(self):
-        """Any rank, killed at EARTHSHINE_KILLS (four) moments: each file is there whole or not at all, none is left unfinished, and the
-        next run writes what one that nobody disturbed does."""
+        """Each rank, killed at EARTHSHINE_KILLS (four) moments: each file is complete or absent, no
+        temporary file remains, and the next run writes the bytes of an undisturbed one."""
         kills = int(os.environ.get("EARTHSHINE_KILLS", "4"))
         chance = random.Random(21)
         for call, names in ((("solve", "ball.toml", "-o", "s.h5", "--set", "quality.patch_edge=0.1", "-q"), ("s.h5",)),
@@ -410,7 +423,7 @@ class Kills(OfRanks):
                 with self.subTest(call[0], rank=rank, seconds=wait):
                     run, ranks = self.started(3, *call)
                     time.sleep(wait)
-                    with contextlib.suppress(ProcessLookupError):  # the run was faster than the first
+                    with contextlib.suppress(ProcessLookupError):  # the run ended first
                         os.kill(int(ranks[rank]), 9)
                     run.communicate(timeout=60)
                     killed += run.returncode != 0
@@ -423,8 +436,8 @@ class Kills(OfRanks):
             self.assertGreater(killed, 0)
 
     def test_the_next_run_ends_what_a_kill_left(self):
-        """Any rank, killed at EARTHSHINE_KILLS (four) moments of a run: the study is there whole or not at all, and the next is the
-        one that nobody disturbed."""
+        """Each rank, killed at EARTHSHINE_KILLS (four) moments of a run: the study is complete or
+        absent, and the next run writes the undisturbed one."""
         call = ("study", "orbit", "bay.toml", "--positions", "17", "--iris", "normal", "--wanted", "box>=0.5", "-q", "-o")
         begun = time.monotonic()
         self.ranks(3, *call, "w", "-j", 1)
@@ -439,7 +452,7 @@ class Kills(OfRanks):
                 time.sleep(wait)
                 try:
                     os.kill(int(ranks[rank]), 9)
-                except ProcessLookupError:  # the run was faster than the first
+                except ProcessLookupError:  # the run ended first
                     pass
                 run.communicate(timeout=60)
                 killed += run.returncode != 0

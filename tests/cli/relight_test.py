@@ -8,7 +8,7 @@ import program
 
 
 def single(value):
-    """Rounded to a float."""
+    """Rounded to single precision."""
     return array.array("f", [value])[0]
 
 

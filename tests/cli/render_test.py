@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""render: pixels, layers, header, and the same bytes from the same seed."""
+"""render: pixels, layers, header, and equal bytes for equal seeds."""
 import math
 import resource
 import unittest
@@ -8,7 +8,7 @@ import exr
 import program
 
 
-# A mirror ball over a floor, by a wide Sun.
+# A mirror ball above a floor, lit by a wide Sun.
 CAUSTIC = """format = 1
 [[material]]
 name = "floor"
@@ -79,7 +79,8 @@ class Render(program.Case):
                 self.assertLessEqual(abs(whole - lamp - sun), 1e-6 * max(whole, 1e-3))
 
     def test_a_lamp_switched_off_leaves_the_other_layer(self):
-        same = ("--set", "quality.gather=per-sample")  # else samples go where all light together is noisy
+        same = ("--set", "quality.gather=per-sample")  # by default samples are allocated by the
+                                                       # noise of all light together
         both = self.render("ball.toml", "--per-light", *same)[3]
         sun = self.render("ball.toml", "--set", "light.lamp.intensity=0", *same)[3]
         for c in "RGB":
@@ -89,7 +90,7 @@ class Render(program.Case):
     def test_further_layers(self):
         _, _, _, channels = self.render("ball.toml", "--camera", "above", "--aov",
                                         "albedo,normal,position,depth,range,object,material")
-        middle = 10 * 20 + 10  # close to the axis: the top of the ball, 4.8 m below the camera
+        middle = 10 * 20 + 10  # near the axis: the top of the ball, 4.8 m below the camera
         self.assertAlmostEqual(channels["Z"][middle], 4.8, delta=0.1)
         self.assertGreaterEqual(channels["range"][middle], channels["Z"][middle])
         self.assertEqual(channels["object"][middle], 1)
@@ -141,7 +142,7 @@ class Render(program.Case):
         radiosity = sum(self.render("ball.toml")[3]["G"])
         header, _, _, paths = self.render("ball.toml", "--indirect", "paths", "--per-light")
         self.assertEqual(header["earthshine:indirect"], "paths")
-        # The pixels' own variances say how far the sum may be off; patches add about 1 %.
+        # The tolerance of the sum is from the pixels' variances; patches add about 1 %.
         error = 4 * sum(paths["variance"]) ** 0.5 + 0.02 * radiosity
         self.assertLess(error, 0.1 * radiosity)
         self.assertAlmostEqual(sum(paths["G"]), radiosity, delta=error)
@@ -163,9 +164,10 @@ class Render(program.Case):
         _, everything, of_everything = summed(*paths)
         header, gathered, of_gathered = summed(*paths, "--no-caustics")
         shown, picture, _ = summed("--error", "0.02")
-        # The ball throws sunlight onto the floor: a quarter of all, eighteen times the paths' noise.
+        # The ball reflects sunlight onto the floor: a quarter of all light, eighteen times the
+        # noise of the paths.
         self.assertGreater(everything - gathered, 8 * math.hypot(of_everything, of_gathered))
-        # Its mean is off by no more than its pixels are in the mean square.
+        # The error of the mean is at most the RMS error of the pixels.
         bound = float(shown["earthshine:error.bound_95"])
         self.assertLess(abs(picture - gathered), 4 * of_gathered + bound * gathered)
         self.assertEqual(header["earthshine:caustics"], "no")
@@ -178,7 +180,7 @@ class Render(program.Case):
                 for how in ("none", "distributed", "radiosity")}
         self.assertGreater(sums["none"], 0)
         self.assertGreater(sums["radiosity"], sums["none"])
-        # Neither lamp nor Sun is spread, so the distributed lights are the direct light.
+        # Lamp and Sun are small, so that the distributed lights equal the direct light.
         self.assertAlmostEqual(sums["distributed"] / sums["none"], 1, delta=0.02)
 
     def test_lights_over_an_area_stand_for_the_earth(self):
@@ -204,7 +206,8 @@ class Render(program.Case):
         self.says(self.refused("inspect", "flat.toml"), "edge_v", "not parallel")
 
     def test_what_cannot_fit_into_memory_is_refused_before_the_work(self):
-        # 2^28 pixels of 9 channels are 9 GiB, and what is kept until they are done several times that; a limit of the address space stands for a small machine.
+        # 2^28 pixels of 9 channels are 9 GiB, and rendering needs several times as much; a limit of
+        # the address space replaces a small machine.
         self.write("ball.toml", program.BALL)
         limit = 4 << 30
         def refused(*arguments):

@@ -3,7 +3,7 @@
 
 usage: report_browser.py PROGRAM [OUT]    screenshots and a PDF go to OUT
 
-Exit code 77 where there is no browser, no Node.js or no report/node_modules.
+Exit code 77 without a browser, Node.js or report/node_modules.
 """
 import json
 import pathlib
@@ -15,7 +15,8 @@ import tempfile
 TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 SKIPPED = 77
 
-# What users may call their cameras, targets, lamps, groups and studies. Were one of them run, `owned` would be there.
+# Hostile names of cameras, targets, lamps, groups and studies. If one were executed, `owned` would
+# exist.
 HOSTILE = {
     "B": "B" + "W" * 10000,
     "C": "</script><script>window.owned = 1</script>",
@@ -30,7 +31,7 @@ HOSTILE = {
 
 
 def hostile(value):
-    """The study with those names, wherever they stand alone."""
+    """The study with these names, wherever a name is a whole value."""
     if isinstance(value, dict):
         return {hostile(key): hostile(item) for key, item in value.items()}
     if isinstance(value, list):

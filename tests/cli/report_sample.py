@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A study.json as a visibility study writes it, of any size: what the report's tests draw.
+"""A study.json in the format of a visibility study, of any size, for tests of the report.
 
 usage: report_sample.py OUT.json    writes tests/data/report/study.json
 
-The figures follow simple laws (a Sun that rises over the bay, lamps of two settings, an eclipse), so
-that the page looks like a study's; none is a result of the program.
+Its figures follow simple laws (a Sun that rises over the bay, lamps of two settings, an eclipse),
+so that the page looks realistic; none is a result of the program.
 """
 import json
 import math
@@ -25,7 +25,7 @@ def rounded(value, digits=4):
 
 
 def sun_share(position):
-    """Of the Sun's disc, linear over 4 degrees at both ends of the eclipse."""
+    """Visible share of the Sun's disc, linear over 4 degrees at both ends of the eclipse."""
     inside = min(position - ECLIPSE[0], ECLIPSE[1] - position)
     return min(1.0, max(0.0, 0.5 - inside / 4.0))
 
@@ -35,7 +35,7 @@ def phase(share):
 
 
 def chances(cycles, cnr):
-    """Johnson's curve with 1, 4 and 6.4 cycles, and what the noise leaves of it."""
+    """Johnson's curve with 1, 4 and 6.4 cycles, reduced by noise."""
     def one(needed):
         ratio = cycles / needed
         power = ratio ** (2.7 + 0.7 * ratio)
@@ -120,7 +120,7 @@ def result(condition, position, lamps, camera, target):
 
 
 def study(positions=24, cameras=2, targets=3, lamps=2):
-    """A study as a value. Its pictures are those of tests/data/report."""
+    """A study as a value. Its pictures are in tests/data/report."""
     cameras, targets, lamps = CAMERAS[:cameras], TARGETS[:targets], list(LAMPS)[:lamps]
     places = [round(360 * k / positions, 3) for k in range(positions)]
     conditions = {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""report: the page drawn from a study.json, what is in it, what it may do, and what is refused."""
+"""report: the page drawn from a study.json, its contents, its permissions, and errors."""
 import html.parser
 import json
 import os
@@ -14,13 +14,14 @@ import study_table
 SAMPLE = program.TOP / "tests" / "data" / "report"
 HAS_SCRIPT = os.environ.get("EARTHSHINE_REPORT_SCRIPT") == "ON"
 EVIL = "</script><img src=x onerror=alert(1)>\"'&"
-# Elements that may stand open to the end of what holds them.
+# Elements whose end tag is optional.
 OPTIONAL = {"p", "li", "td", "th", "tr", "dt", "dd", "option"}
 VOID = {"meta", "img", "br", "col", "input", "link"}
 
 
 class Page(html.parser.HTMLParser):
-    """The elements, the text without style and script, and whether what is opened is closed."""
+    """Collects the elements and the text without style and script; checks that all elements are
+    closed."""
 
     def __init__(self, text):
         super().__init__()
@@ -55,7 +56,7 @@ class Page(html.parser.HTMLParser):
 
 class Report(program.Case):
     def study(self, results=None, *arguments):
-        """Writes a study's folder, draws its report, gives the page's text."""
+        """Writes a study's folder, draws its report, returns the page's text."""
         folder = self.folder / "study"
         shutil.copytree(SAMPLE, folder, dirs_exist_ok=True)
         if results is not None:
@@ -150,7 +151,7 @@ class Content(Report):
 
 class Safety(Report):
     def evil_study(self):
-        """Each text of the sample that a user may choose is made to break out."""
+        """Each text of the sample that a user may choose is replaced by markup."""
         text = json.dumps(report_sample.study(positions=6))
         for word in ("tss", "bay lamps on", "STS-46 payload bay", "is not simulated", "by the Earth", "5d3e0f1a2b4c6978",
                      "tone-mapped", "size", "GCC", "the tail stands", "c0"):
@@ -165,7 +166,8 @@ class Safety(Report):
         self.assertIn(EVIL, evil.text)
 
     def test_a_name_that_turns_the_direction_of_writing_is_isolated(self):
-        # UAX #9: what U+2068 begins, U+2069 ends, overrides in it included; one of the name's own ends nothing.
+        # UAX #9: U+2069 ends the text that U+2068 begins, with the overrides in it; a U+2069 in the
+        # name must not end it.
         text = json.dumps(report_sample.study(positions=4))
         plain = self.study(json.loads(text))
         self.assertNotIn("\u2068", plain)
@@ -190,7 +192,7 @@ class Safety(Report):
         shutil.copytree(SAMPLE, folder)
         (folder / "study.json").write_bytes(json.dumps(study_table.closed(study)).replace("\\ud800", "x").encode().replace(b"STS-46 payload", b"\xff\xc0\xaf"))
         run = self.run_program("report", "study")
-        self.assertIn(run.returncode, (0, 2))  # a parser may refuse bytes that are no text
+        self.assertIn(run.returncode, (0, 2))  # a parser may refuse bytes that are not text
         if run.returncode == 0:
             (folder / "report.html").read_bytes().decode("utf-8")
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Round bodies from coarse meshes: exact where the answer does not depend on the shape, and near the true sphere."""
+"""Round bodies from coarse meshes: exact if the answer does not depend on the shape, else close to
+the true sphere."""
 import math
 import unittest
 
@@ -54,7 +55,7 @@ resolution = [48, 48]
 
 class Round(program.Case):
     def test_a_furnace_stays_exact(self):
-        # B = M / (1 - rho) in every closed room, whatever its shape: L = 10 / 0.5 / pi.
+        # B = M / (1 - rho) in every closed room of any shape: L = 10 / 0.5 / pi.
         self.write("ball.obj", sphere(8, normals=False))
         self.write("room.toml", SCENE.format(emit=10, keys="inward = true\nsmooth_deg = 60\nround_deg = 15") + """
 [[camera]]
@@ -71,7 +72,7 @@ resolution = [12, 12]
             self.assertAlmostEqual(value / (20 / math.pi), 1.0, places=4)
 
     def picture(self, keys):
-        """Mean deviation from the true sphere, of its brightest radiance."""
+        """Mean difference from the true sphere, relative to its largest radiance."""
         self.write("ball.obj", sphere(16))
         self.write("ball.toml", SCENE.format(emit=0, keys=keys) + SUN)
         self.done("render", "ball.toml", "-o", "a.exr", "--indirect", "none", "--no-error")
@@ -82,7 +83,7 @@ resolution = [12, 12]
         for y in range(48):
             for x in range(48):
                 px, pz = (x + 0.5 - 24) * pixel, (24 - y - 0.5) * pixel
-                if px * px + pz * pz > 0.8:  # the silhouette's pixels are mixtures
+                if px * px + pz * pz > 0.8:  # pixels at the silhouette are mixtures
                     continue
                 depth = -math.sqrt(1 - px * px - pz * pz)
                 cosine = max(0.0, toward[0] * depth + toward[1] * pz)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Broken scenes: each is refused with its place, what was found and what is allowed, exit code 2."""
+"""Broken scenes: the error has the position, the value found and the allowed values; exit code 2.
+"""
 import os
 import unittest
 

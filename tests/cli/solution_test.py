@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""solve -o and render --solution: a solution kept in a file, reused, refused when stale."""
+"""solve -o and render --solution: a stored solution, its reuse, and its refusal when it is
+outdated."""
 import json
 import os
 import resource
@@ -17,7 +18,7 @@ ALL_BITS = (1 << 64) - 1
 
 
 def seal(path):
-    """Says in the file's first block that what follows is as the program wrote it (base::Digest)."""
+    """Writes a valid seal (base::Digest) into the file's first block."""
     def mix(x):
         x = (x + 0x9e3779b97f4a7c15) & ALL_BITS
         x = ((x ^ (x >> 30)) * 0xbf58476d1ce4e5b9) & ALL_BITS
@@ -143,7 +144,7 @@ class Solution(program.Case):
             self.assertEqual(file.attrs["name"].decode(), "ball on a floor")
             self.assertEqual((file.attrs["seed"], file.attrs["patch_edge_m"]), (1, 0.5))
             self.assertEqual(file.attrs["residual"], report["residual"])
-            # What the report says of each object is what the patches add up to.
+            # The report of each object is the sum over its patches.
             area, owner = file["area"][:], file["object"][:]
             incident = (file["illuminance_direct"][:] + file["illuminance_indirect"][:]).sum(axis=1)
             for index, stated in enumerate(report["objects"]):
@@ -177,8 +178,8 @@ class Solution(program.Case):
         self.says(self.refused("solve", "ball.toml", "-o", "bad.h5", "--solution", "bad.h5"), "overwritten")
 
     def test_killed_while_writing(self):
-        """The old file stays whole: by a limit on the file's size, which ends the writing half-way, and by
-        SIGKILL once the new file is begun."""
+        """The old file remains complete: after a limit on the file's size, which stops the writing
+        half-way, and after SIGKILL once the new file has been started."""
         self.done("solve", "ball.toml", "-o", "ball.h5")
         old = self.bytes_of("ball.h5")
         call = [program.PROGRAM, "solve", "ball.toml", "-o", "ball.h5", "-q", "--set", "quality.patch_edge=0.02",
@@ -201,7 +202,7 @@ class Solution(program.Case):
                 time.sleep(0.0005)
             run.kill()
         if run.returncode == 0:
-            return  # it was done before the signal came
+            return  # it ended before the signal
         self.assertEqual(run.returncode, -signal.SIGKILL)
         self.assertEqual(self.bytes_of("ball.h5"), old)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""solve: the closed box, the energy of every light group, the keys that scripts rely on."""
+"""solve: the closed box, the energy of every light group, keys for scripts."""
 import json
 import unittest
 
@@ -8,7 +8,7 @@ import program
 
 class Solve(program.Case):
     def test_closed_box_reaches_emission_over_one_minus_reflectance(self):
-        # B = M + rho B in every patch, so B = M / (1 - rho) = 10 / 0.5, and E = B.
+        # B = M + rho B in every patch, hence B = M / (1 - rho) = 10 / 0.5, and E = B.
         self.write("box.toml", program.CLOSED_BOX)
         solved = self.json("solve", "box.toml")
         room, = solved["objects"]
@@ -89,7 +89,7 @@ class Solve(program.Case):
     def test_refinement(self):
         self.write("ball.toml", program.BALL)
         even = self.json("solve", "ball.toml")
-        self.assertEqual(even["refinement"], {"rounds": [], "rays": 0})  # patch_edge alone: all alike
+        self.assertEqual(even["refinement"], {"rounds": [], "rays": 0})  # patch_edge only: uniform patches
         budget = even["patches"] + 150
         call = ("ball.toml", "--set", f"quality.max_patches={budget}")
         refined = self.json("solve", *call)

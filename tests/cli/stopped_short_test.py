@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Exit code 3: all was written, but not to the error that the call asked for."""
+"""Exit code 3: all output was written, but the wanted error was not reached."""
 import json
 import unittest
 
 import program
 
 FINE = "quality.error=0.002"
-LITTLE = 1.0  # MiB for the work: 1.6 % is reached, eight times what is asked
+LITTLE = 1.0  # MiB for the work: 1.6 % is reached, eight times the wanted error
 
 
 class StoppedShort(program.Case):
@@ -38,7 +38,7 @@ class StoppedShort(program.Case):
         self.assertEqual(error["limit"], "memory")
         self.assertGreater(error["seconds_to_go"], 0)
         self.assertTrue((self.folder / "a.h5").exists())
-        # Read again it is as far off, and no time makes it better.
+        # The same error after reading it again, and more time does not reduce it.
         out, line = self.short("solve", "ball.toml", "--error", "0.002", "--solution", "a.h5", "--json")
         self.says(line, "taken as it is")
         error = json.loads(out)["error"]
@@ -50,7 +50,7 @@ class StoppedShort(program.Case):
     def test_what_is_done_is_done(self):
         self.done("solve", "ball.toml", "--error", "0.3")
         self.done("render", "ball.toml", "-o", "a.exr", "--size", "24x24", "--error", "0.3")
-        self.done("render", "ball.toml", "-o", "a.exr", "--size", "24x24", "--time-limit", "0.3")  # wants no error
+        self.done("render", "ball.toml", "-o", "a.exr", "--size", "24x24", "--time-limit", "0.3")  # no wanted error
         self.done("render", "ball.toml", "-o", "a.exr", "--size", "24x24", "--set", "quality.error=0.02", "--no-error")
 
     def test_a_scene_alone_changes_nothing(self):

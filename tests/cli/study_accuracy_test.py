@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""study accuracy: its folder, going on after a kill, what is refused, and what has nothing to measure."""
+"""study accuracy: its folder, resuming after a kill, errors, and studies without measurements."""
 import csv
 import json
 import math
@@ -26,7 +26,7 @@ class Accuracy(program.Case):
         super().setUp()
         scene = program.BALL[:program.BALL.index("[quality]")]
         self.write("ball.toml", scene)
-        # The quickest of ladders, where what is measured does not matter.
+        # The fastest ladder, for tests that do not depend on measured values.
         ball = scene[scene.index('[[object]]\nname = "ball"'):scene.index("[[light]]")]
         self.write("floor.toml", scene.replace(ball, "").replace('material = "floor"', 'material = "paint"'))
 
@@ -34,7 +34,7 @@ class Accuracy(program.Case):
         return ("study", "accuracy", scene, "-o", folder, "--camera", "A", *CALL, *more)
 
     def finished(self, folder="d"):
-        """The folder of a run that nothing disturbed: made once for all tests."""
+        """The folder of an undisturbed run, made once for all tests."""
         if not Accuracy.kept:
             Accuracy.kept.append(tempfile.TemporaryDirectory(prefix="earthshine accuracy "))
             self.done(*self.study(folder=folder))
@@ -54,7 +54,7 @@ class Accuracy(program.Case):
         return {path.name: path.stat().st_mtime_ns for path in (self.folder / folder / "points").iterdir()}
 
     def figures(self, value):
-        """Without what seconds decide: they, the front, what follows from it."""
+        """Without values that depend on seconds: the seconds, the front, and its consequences."""
         value = {key: found for key, found in value.items() if key not in ("front", "worth", "wanted", "reference")}
         for row in value["points"]:
             for key in [key for key in row if "seconds" in key or key == "on_front"]:
@@ -162,7 +162,7 @@ class GoesOn(Accuracy):
             self.assertGreaterEqual(len(self.parts()) - count, len(before), change)
         count = len(self.parts())
         call = [word if word != "0.5,0.3" else "0.4,0.3" for word in self.study()]
-        self.done(*call)  # other questions, the same ladder
+        self.done(*call)  # another wanted error, the same ladder
         self.assertEqual(len(self.parts()), count)
 
     def test_torn_and_foreign_parts_are_named_and_done_again(self):
@@ -225,9 +225,9 @@ class Nothing(Accuracy):
 
 class SourcesThatReflect(Accuracy):
     def test_a_room_that_glows_is_measured_by_what_its_walls_reflect(self):
-        # Every wall emits M = 10 lm/m2 and reflects half: B = M / (1 - 0.5) = 20, of which 10 / pi cd/m2 is reflected light.
-        # Light straight from the sources, once reflected, is half of that: direct pictures are off by 50 %, and the
-        # solution, which is exact here, by nothing.
+        # Every wall emits M = 10 lm/m2 and reflects half: B = M / (1 - 0.5) = 20, of which 10 / pi
+        # cd/m2 is reflected light. Light reflected once is half of this: direct pictures have an
+        # error of 50 %. The solution is exact here.
         self.write("room.toml", program.CLOSED_BOX)
         self.done("study", "accuracy", "room.toml", "-o", "d", *CALL)
         result = self.result()

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JSON that a study or a call in parts left and somebody changed: read, refused in one line or made anew, and never the
-end of the program by a signal or by words of a library.
+"""Edited JSON of a study or of a call in parts: it is read, refused in one line or replaced, and
+never ends the program by a signal or with a library's message.
 
-Every value in turn becomes one of another kind, and files are cut short. One kind for each value, by a fixed seed; all
-kinds with EARTHSHINE_MUTATIONS=all (minutes).
+Each value in turn gets another type, and files are truncated. One type per value, by a fixed seed;
+all types with EARTHSHINE_MUTATIONS=all (minutes).
 """
 import copy
 import json
@@ -18,11 +18,11 @@ import tiny_bay
 
 KINDS = [None, True, -1e300, 3, "x", "", [], ["x"], {}, {"x": [1]}, [[[1]]]]
 ALL = os.environ.get("EARTHSHINE_MUTATIONS") == "all"
-DEEP = 100000  # lists within one another: as many calls on the stack, where they are followed
+DEEP = 100000  # nested lists: a recursive parser needs as many calls on the stack
 
 
 def places(value, way=()):
-    """Of entries of a list the first alone: the others are read alike."""
+    """Only the first entry of a list, because all are read by the same code."""
     yield way
     inner = value.items() if isinstance(value, dict) else enumerate(value[:1]) if isinstance(value, list) else ()
     for key, part in inner:
@@ -57,7 +57,8 @@ class StudyJson(program.Case):
         return run
 
     def mutate(self, file, call, again=None):
-        """again: what is called before each, to bring back what the call may have mended."""
+        """again: a call before each test that restores files which the tested call may have
+        repaired."""
         path = self.folder / file
         text = path.read_text(encoding="utf-8")
         value, refused = json.loads(text), 0

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Studies in parts: what one process finds, but for seconds, whatever order, number and fate of the parts."""
+"""Studies in parts: the results of one process except seconds, for any order, number and fate of
+the parts."""
 import json
 import random
 import signal
@@ -10,7 +11,7 @@ import unittest
 import program
 from tiny_bay import BAY, PLAIN_BAY, Case
 
-ORBIT = ("study", "orbit", "bay.toml", "--positions", "17", "--iris", "normal", "--wanted", "box>=0.5", "-o")  # 2 batches a camera
+ORBIT = ("study", "orbit", "bay.toml", "--positions", "17", "--iris", "normal", "--wanted", "box>=0.5", "-o")  # 2 batches per camera
 SEVERAL = {
     "orbit": ORBIT,
     "run": ("study", "run", "s.toml", "-o"),
@@ -33,7 +34,8 @@ class StudyPartsCase(Case):
         return [self.strip(item) for item in value] if isinstance(value, list) else value
 
     def results(self, folder):
-        """All files of a study: pictures as bytes, tables without what it took. Plots and pages hold seconds."""
+        """All files of a study: pictures as bytes, tables without costs. Plots and pages contain
+        seconds."""
         found = {}
         for path in sorted((self.folder / folder).rglob("*")):
             name = str(path.relative_to(self.folder / folder))
@@ -45,7 +47,8 @@ class StudyPartsCase(Case):
         return found
 
     def without_seconds(self, accuracy):
-        """Of an accuracy study: points and limits. Fronts and prices follow from CPU seconds, memory from threads."""
+        """Points and limits of an accuracy study. Fronts and prices depend on CPU seconds, memory
+        on threads."""
         kept = dict(accuracy)
         kept.pop("accuracy.csv")
         kept["accuracy.json"] = {key: kept["accuracy.json"][key] for key in ("points", "limits", "reference", "not_run")}
@@ -77,8 +80,8 @@ class StudyParts(StudyPartsCase):
                     for part in [*order, order[0]]:
                         out = self.done(*call, folder, "--part", f"{part}/{count}", "-q", "-j", 1 + part % 2)
                         self.assertEqual(out, "")
-                    # The PNGs of clean pictures have one white for all, and which conditions are shown in
-                    # small follows from all verdicts: the merge writes them.
+                    # The merge writes the PNGs of clean pictures, which have a common white, and
+                    # the small pictures, whose selection depends on all verdicts.
                     figures = whole.get("study.json", {}).get("figures", [])
                     clean = {figure["file"] for figure in figures if figure["clean"]}
                     clean |= {file for file in whole if file.startswith("pictures/small-")}
@@ -90,7 +93,7 @@ class StudyParts(StudyPartsCase):
                         self.assertEqual(self.without_seconds(merged), self.without_seconds(whole))
                     else:
                         self.assertEqual(merged, whole)
-                    if name in ("orbit", "run"):  # nothing was done again
+                    if name in ("orbit", "run"):  # no work was repeated
                         self.assertEqual(set(self.costs(folder).values()), {True})
 
     def test_one_solution_for_all(self):
@@ -135,14 +138,15 @@ class StudyParts(StudyPartsCase):
         self.says(self.refused("merge", "o"), "the settings changed")
 
     def test_a_torn_part_is_missing(self):
-        """A fifth of what a merge reads or trusts is broken in turn: it lists the part, writes nothing, and the part mends it."""
+        """A fifth of the files that a merge reads is broken in turn: it lists the part and writes
+        nothing, and the part repairs it."""
         for part in (1, 2):
             self.done(*ORBIT, "o", "--part", f"{part}/2", "-q")
         kept = sorted(path for path in (self.folder / "o" / "points").iterdir()
                       if path.suffix in (".json", ".exr") and not path.name.startswith(("parts", "solution")))
         sound = {path: path.read_bytes() for path in kept}
         self.assertGreater(len(sound), 10)
-        for torn in kept[::5]:  # their names are digests: any kind may come
+        for torn in kept[::5]:  # their names are digests, so that all kinds occur
             with self.subTest(torn.name):
                 torn.write_bytes(sound[torn][:-20])
                 message = self.refused("merge", "o", code=1)
@@ -155,7 +159,7 @@ class StudyParts(StudyPartsCase):
                 (self.folder / "o" / "study.json").unlink()
 
     def test_a_merge_does_not_solve(self):
-        call = SEVERAL["visibility"]  # whose report reads the solution again
+        call = SEVERAL["visibility"]  # its report reads the solution again
         self.done(*call, "o", "--part", "1/1", "-q")
         (solution,) = (self.folder / "o" / "points").glob("solution-*.h5")
         solution.unlink()
@@ -186,7 +190,8 @@ class StudyParts(StudyPartsCase):
         self.says(note, "part 99 of 100: nothing to do: the study has ")
 
     def test_accuracy_in_too_little_memory(self):
-        """A step whose memory cannot be had is left out for the reason that one process gives, by the part that has it."""
+        """A step without enough memory is omitted with the same reason as by one process, by the
+        part that owns it."""
         call = (*SEVERAL["accuracy"], "w", "--max-memory", "1MiB", "-q")
         self.done(*call)
         whole = self.without_seconds(self.results("w"))
@@ -195,7 +200,7 @@ class StudyParts(StudyPartsCase):
             self.done(*call[:-4], "o", "--max-memory", "1MiB", "--part", f"{part}/2", "-q")
         self.done("merge", "o", "-q")
         self.assertEqual(self.without_seconds(self.results("o")), whole)
-        # With more, the same part does what it left out.
+        # With more memory the same part computes it.
         for part in (1, 2):
             self.done(*call[:-4], "o", "--part", f"{part}/2", "-q")
         self.done("merge", "o", "-q")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Visibility studies that cannot be: one clear line, and nothing is begun."""
+"""Invalid visibility studies: one clear line, and no work is started."""
 import os
 import unittest
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Visibility studies that are ended go on from what is finished."""
+"""Interrupted visibility studies resume from finished results."""
 import json
 import os
 import pathlib
@@ -33,7 +33,7 @@ class Resume(Case):
         begin = time.monotonic()
         self.done(*self.CALL, "-o", "whole")
         took = time.monotonic() - begin
-        # What a write that was cut short leaves, and one that is still at work.
+        # Files of a write that was cut short, and of one that is still running.
         points = self.folder / "o" / "points"
         points.mkdir(parents=True)
         gone = self.started("--version")
@@ -61,7 +61,7 @@ class Resume(Case):
         found = [stage for stage, found in self.costs("o").items() if found and stage.startswith("picture")]
         self.assertEqual(len(found), len(whole_pictures))
         at_work.unlink()
-        self.assertEqual(self.all_files("o"), self.all_files("whole"))  # nothing torn or temporary beside them
+        self.assertEqual(self.all_files("o"), self.all_files("whole"))  # no torn or temporary files
 
     def test_torn_parts_are_done_again(self):
         self.done(*self.CALL, "-o", "o")
@@ -76,7 +76,8 @@ class Resume(Case):
         self.assertEqual(set(self.costs("o").values()), {False})
 
     def test_work_of_another_constant_is_not_believed(self):
-        """One constant of one source file is another, and the program is compiled and linked as the build does it."""
+        """Changes one constant in one source file; compiles and links the program like the build.
+        """
         build, top = pathlib.Path(program.PROGRAM).parent, pathlib.Path(__file__).resolve().parents[2]
         source, constant = top / "degrade/parts/iris.cpp", "constexpr double normal_power = "
         code = source.read_text(encoding="utf-8")
@@ -91,14 +92,14 @@ class Resume(Case):
         for line, option, path in ((compiled, "-c", changed), (compiled, "-o", objects),
                                    (compiled, "-MF", objects.with_suffix(".d")), (linked, "-o", other)):
             line[line.index(option) + 1] = str(path)
-        linked.insert(1, str(objects))  # ahead of the library that has the other
+        linked.insert(1, str(objects))  # before the library with the original
         for line in (compiled, linked):
             subprocess.run(line, cwd=build, check=True)
         self.done(*self.CALL, "-o", "o")
         run = subprocess.run([other, *self.CALL, "-o", "o"], cwd=self.folder, capture_output=True, text=True, check=False)
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertEqual(set(self.costs("o").values()), {False})
-        # Its own work each of them finds.
+        # Each program finds its own results.
         self.done(*self.CALL, "-o", "o")
         self.assertEqual(set(self.costs("o").values()), {True})
 
@@ -124,12 +125,12 @@ class Resume(Case):
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def test_a_signal_ends_a_solve_at_once(self):
-        """Nothing of it could be kept: the study went on until all of the solve was done, and ended with exit code 1."""
+        """A signal ends a solve at once, without a stored solution."""
         call = ("study", "orbit", "bay.toml", "--positions", "4", "-o", "o", "--set", "quality.patch_edge=0.1",
                 "--set", "quality.form_factor_rays=16384")
         for number in (signal.SIGINT, signal.SIGTERM):
             run = self.started(*call)
-            while run.poll() is None and self.cpu_seconds(run) < 1.0:  # some 0.1 before the solve, 5 within it
+            while run.poll() is None and self.cpu_seconds(run) < 1.0:  # about 0.1 before the solve, 5 in it
                 time.sleep(0.01)
             run.send_signal(number)
             run.communicate()
@@ -137,7 +138,7 @@ class Resume(Case):
             self.assertEqual(list(self.folder.glob("o/points/solution-*.h5")), [])
 
     def leaves_at_once(self, run, after):
-        """Ctrl-C, after so many seconds of a processor more, ends it within a second and a half of one."""
+        """Ctrl-C, after so many more CPU seconds, ends the run within 1.5 CPU seconds."""
         taken = self.cpu_seconds(run) + after
         while run.poll() is None and self.cpu_seconds(run) < taken:
             time.sleep(0.01)
@@ -149,14 +150,14 @@ class Resume(Case):
         self.assertLess(usage.ru_utime + usage.ru_stime - taken, 1.5)
 
     def test_a_signal_leaves_a_picture_at_once(self):
-        """None is kept that is not whole: it was finished as far as it had come, for 3 s of a processor, and thrown away."""
+        """Unfinished pictures are not kept, so that a signal ends them at once."""
         run = self.started("study", "orbit", "bay.toml", "--positions", "4", "-o", "o", "--size", "512x512")
         while run.poll() is None and not list(self.folder.glob("o/points/solution-*.h5")):
             time.sleep(0.01)
         self.leaves_at_once(run, 0.3)
 
     def test_a_signal_leaves_a_picture_by_spread_lights_at_once(self):
-        """It was drawn to its end, for a minute of a processor; the coarse look at it asked nobody, either."""
+        """The same for a picture by distributed lights, also in its initial sampling."""
         self.write("study.toml", '''format = 1
 scene = "bay.toml"
 size = "128x128"

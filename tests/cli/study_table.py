@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The results of a study.json, a table there, as a list of objects, and back."""
+"""Converts the results of a study.json, which are a table, to a list of objects and back."""
 SHARES = {"lit_by", "light_by", "light_from", "light_by_way_of"}  # objects that are one cell
 
 
@@ -35,7 +35,7 @@ def opened(study):
 
 
 def closed(study):
-    """The study as study.json has it."""
+    """The study in the form of study.json."""
     if not isinstance(study, dict) or not isinstance(study.get("results"), list):
         return study
     flat = [dict(cells(entry)) for entry in study["results"]]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""study: the folder of results, its tables, and what is refused."""
+"""study: the folder of results, its tables, and errors."""
 import csv
 import html
 import json
@@ -62,7 +62,7 @@ class Compare(Study):
         self.says(page, f"<h1>{html.escape(hostile)}, camera A</h1>", "image-rendering: pixelated")
         self.assertNotIn("<script", page)
         self.assertNotIn("<b>", page)
-        # An entry per colour that a difference picture can have, and no picture has others.
+        # One entry for each possible colour of a difference picture; no picture has other colours.
         legend = set(re.findall(r'fill="#(\w{6})"', page))
         self.assertEqual(len(legend), 10)
         for picture in self.PICTURES[2::2]:
@@ -115,9 +115,9 @@ class Compare(Study):
         self.assertEqual(pictures("1"), pictures("2"))
 
     def test_pictures_share_one_exposure(self):
-        # The walls' radiance is M / pi, after one reflection 1.5 and after all 2 times that. Each picture
-        # for itself would be middle grey, 118; with the reference's exposure the direct light is a signal
-        # of 0.18 x 0.75, which sRGB encodes as 103; its noise takes a little off the mean.
+        # The walls' radiance is M / pi, after one reflection 1.5 and after all 2 times this. Each
+        # picture with its own exposure would be middle grey, 118. With the reference's exposure the
+        # direct light is a signal of 0.18 x 0.75, sRGB 103; its noise reduces the mean slightly.
         self.write("box.toml", program.CLOSED_BOX)
         self.done("study", "compare", "box.toml", "-o", "d", "--lights", "4")
         for method, grey in (("reference", 118), ("direct", 103)):
@@ -131,7 +131,7 @@ class Compare(Study):
         self.assertEqual((self.folder / "d" / "compare-targets.csv").read_text(), "")
 
 
-# A lit plate under an area lamp, one light group; what varies is put in.
+# A lit plate under an area lamp, one light group, with parameters.
 PLATE = """format = 1
 name = "plate"
 unit = "m"
@@ -214,13 +214,13 @@ class CompareCases(Study):
     def test_without_anything_wide_the_approximation_is_direct_light(self):
         printed = self.compared(light=SUN)
         self.assertFalse(printed["wide_sources"])
-        # The number of lights then changes nothing.
+        # The number of lights then has no effect.
         self.assertEqual(printed["methods"][2]["relative_rmse"], printed["methods"][3]["relative_rmse"])
         self.says(self.done("study", "compare", "plate.toml", "-o", "d", "--lights", "4"), "direct light alone")
 
 
 class Visibility(Study):
-    ENGINE = ["pictures", "points", "report.html", "results.csv", "study.json"]  # of every visibility study
+    ENGINE = ["pictures", "points", "report.html", "results.csv", "study.json"]  # files of every visibility study
     BEFORE = ["ball.toml", "monitored.toml"]
 
     def test_all_cameras_by_default(self):
@@ -233,7 +233,7 @@ class Visibility(Study):
             self.assertEqual(float(row["visible_fraction"]), 1)
             self.assertEqual(row["cut_by_frame"], "false")
             self.assertGreater(int(row["pixels"]), 0)
-        # Camera A alone has a CCTV camera.
+        # Only camera A has a CCTV camera.
         self.assertTrue(0 <= float(rows[0]["saturated"]) <= 1)
         self.assertLess(float(rows[0]["shown_from"]), float(rows[0]["shown_to"]))
         self.assertEqual([rows[1][key] for key in ("saturated", "crushed", "shown_from", "shown_to")], [""] * 4)
@@ -275,7 +275,7 @@ class Refused(Study):
             self.says(self.refused("study", "compare", "ball.toml", "-o", "d", f"--lights={lights}"), "--lights")
         self.says(self.refused("study", "visibility", "ball.toml", "-o", "d", "--camera", "none"), '"none"', "above")
         self.says(self.refused("study", "visibility", "ball.toml", "-o", "d", "--lights", "4"), '"--lights"')
-        self.assertEqual(self.files("."), ["ball.toml", "monitored.toml"])  # nothing was begun
+        self.assertEqual(self.files("."), ["ball.toml", "monitored.toml"])  # no work was started
 
     def test_folder_that_cannot_be(self):
         self.says(self.refused("study", "compare", "ball.toml", "-o", "ball.toml"), "ball.toml", "folder")

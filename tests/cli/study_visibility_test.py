@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""study orbit, study run and study visibility: what they write."""
+"""study orbit, study run and study visibility: their output."""
 import csv
 import json
 import unittest
@@ -11,7 +11,8 @@ class Orbit(Case):
     CALL = ("study", "orbit", "bay.toml", "--positions", "6", "--wanted", "box>=0.5", "--iris", "fixed,peak")
 
     def check_thumbnails(self, study):
-        """In small: the first place, midnight, and each place at which a verdict is another than before."""
+        """Small pictures: the first position, midnight, and each position at which a verdict
+        changes."""
         wanted = set()
         for camera in {result["camera"] for result in study["results"]}:
             before = None
@@ -61,14 +62,14 @@ class Orbit(Case):
             self.assertEqual((result["signal"] is not None, result["monitor"] is not None), (cctv, cctv))
             self.assertGreater(result["pixels"], 0)
             self.assertTrue(all(0 <= p <= 1 for p in result["probability"].values()))
-            # Groups below a hundredth are left out, and each figure has four digits.
+            # Groups below a hundredth are omitted, and each figure has four digits.
             self.assertAlmostEqual(sum(result["light_by"].values()) / result["luminance"], 1, delta=0.03)
             self.assertLessEqual(result["luminance_error"], result["luminance_bound"])
-        # Each part of a result has its columns, whether it exists or not.
+        # Each part of a result has its columns, also if it does not exist.
         columns = json.loads((self.folder / "o" / "study.json").read_text(encoding="utf-8"))["results"]["columns"]
         for column in ("probability.identify", "signal.mean", "monitor.threshold", "eye.probability.detect"):
             self.assertEqual(columns.count(column), 1, column)
-        # Under the same lamps and the same sky on either side of noon there is the same light.
+        # Positions on either side of noon with the same lamps and sky have the same light.
         detect = {(c, t): [r["probability"] and r["probability"]["detect"] for r in study["results"]
                            if (r["camera"], r["target"]) == (c, t)] for c in "AB" for t in ("box", "far")}
         self.assertEqual(detect["A", "far"], [None] * 6)
@@ -124,10 +125,10 @@ class Orbit(Case):
                      ("--size", "40x40"), ("--set", "camera.B.fov_deg=51"), ("--set", "orbit.altitude_km=500")):
             self.done(*call, *more)
             self.assertFalse(self.costs("o")["picture s0 B"], more)
-        # Another position has the picture of another sky.
+        # Another position has another sky and another picture.
         self.done(*call[:5], "--at", "10", "--camera", "B")
         self.assertFalse(self.costs("o")["picture s0 B"])
-        # What is asked about the picture does not change it.
+        # Queries about the picture do not change it.
         self.done(*call, "--wanted", "box>=0.9")
         self.assertTrue(self.costs("o")["picture s0 B"])
 
@@ -150,7 +151,7 @@ class Run(Case):
         self.says(self.done("study", "run", "s.toml", "-o", "o", "--dry-run"), "picture found")
 
     def test_a_coloured_factor_is_in_the_results_and_the_report(self):
-        """Light that passes three filters: a factor for each colour, which study.json has and the page shows."""
+        """Light through three filters: a factor per colour, in study.json and on the page."""
         self.write("c.toml", STUDY.replace("set = { right = 0.5 }", "set = { right = [1, 0.5, 0.2] }"))
         self.done("study", "run", "c.toml", "-o", "o")
         coloured = [list(c["factors"].values()) for c in self.study("o")["conditions"] if c["factors"]]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What names of files and things could do to a terminal, and a terminal that is gone."""
+"""Control characters in names of files and objects, and a closed terminal."""
 import csv
 import io
 import os
@@ -22,7 +22,7 @@ class Terminal(program.Case):
         run = self.run_program(*call, text=False)
         self.assertIn(run.returncode, codes, run.stderr)
         for stream in (run.stdout, run.stderr):
-            text = stream.decode("utf-8")  # strictly
+            text = stream.decode("utf-8")  # strict
             for letter in FORBIDDEN:
                 self.assertNotIn(letter, text, f"{call}: {stream!r}")
         said = (run.stdout + run.stderr).decode("utf-8")
@@ -44,7 +44,7 @@ class Terminal(program.Case):
         for command in ("inspect", "solve", "form-factors"):
             self.clean(command, "evil.toml", codes=(0,), shows="red\\u202e\\u009b31m")
         found = self.json("inspect", "evil.toml")
-        self.assertIn("red\u202e\u009b31m", [o["name"] for o in found["objects"]])  # as it is
+        self.assertIn("red\u202e\u009b31m", [o["name"] for o in found["objects"]])  # unescaped
         self.assertNotIn("\u202e", self.done("inspect", "evil.toml", "--json"))
 
     def test_names_in_meshes(self):
@@ -78,7 +78,8 @@ class Terminal(program.Case):
             self.assertEqual({row["target"] for row in csv.DictReader(file)}, {"'=1+2"})
 
     def test_notes_that_nobody_takes(self):
-        """`render 2>&1 | head -1`: the work is done, and the exit code says what was lost."""
+        """`render 2>&1 | head -1`: the work is done, and the exit code shows that output was lost.
+        """
         read_end, write_end = os.pipe()
         os.close(read_end)
         run = self.run_program("render", "ball.toml", "-o", "a.exr", capture_output=False,

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A small scene along an orbit, a study file of it, and what the tests of studies ask of a folder of results."""
+"""A small scene along an orbit, a study file for it, and checks of result folders for tests of
+studies."""
 import json
 import os
 import re
@@ -7,11 +8,12 @@ import re
 import program
 import study_table
 
-# Most of what a study of small pictures takes is the monitor's: a ninth of the resels, each one pixel.
+# The monitor takes most of the time of a study of small pictures: a ninth of the resels, one pixel
+# each.
 SMALL_MONITOR = "[monitor]\nrows = 96\ncolumns = 128\npixels_per_resel = 1\n"
 
-# A box on a floor under two lamps, along an orbit, before two cameras of which one has a CCTV; another box
-# stands where neither looks.
+# A box on a floor under two lamps, along an orbit, with two cameras, one of them CCTV; another box
+# outside both views.
 BAY = """format = 1
 name = "tiny bay"
 unit = "m"
@@ -93,7 +95,7 @@ form_factor_rays = 64
 gather_rays = 16
 """
 
-# Small, and shown by a camera without any stage: for tests of files and of who writes them.
+# Small, and seen by a camera without stages: for tests of files.
 PLAIN_BAY = BAY.replace("[48, 48]", "[16, 16]").replace("sit-monochrome", "plain") + '\n[[cctv]]\nname = "plain"\n'
 
 STUDY = """format = 1
@@ -163,17 +165,17 @@ class Case(program.Case):
         return study_table.opened(self.json(*call))
 
     def no_nonsense(self, folder):
-        """No number that is none in anything a person reads."""
+        """No NaN or infinity in any output."""
         for name in ("study.json", "results.csv", "report.html"):
             text = (self.folder / folder / name).read_text(encoding="utf-8")
             text = re.sub(r"<(script|style|svg)\b.*?</\1>", "", text, flags=re.S)
-            text = re.sub(r"base64,[\w+/=]*", "", text)  # a picture's bytes may spell "+nan/"
+            text = re.sub(r"base64,[\w+/=]*", "", text)  # a picture's bytes may contain "+nan/"
             self.assertNotRegex(text, r"(?i)(?<![\w.-])-?(nan|inf|infinity)(?![\w-])", name)
         return self.study(folder)
 
     @staticmethod
     def without_times(study):
-        """What must be the same on every run."""
+        """Values that must be equal in every run."""
         def strip(value):
             if isinstance(value, dict):
                 return {key: strip(item) for key, item in value.items()

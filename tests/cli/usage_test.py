@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How the program is called: help, version, wrong calls and their exit codes."""
+"""Calling the program: help, version, wrong calls and their exit codes."""
 import unittest
 
 import program
@@ -25,12 +25,12 @@ class Help(program.Case):
                         ["study", "orbit"], ["study", "accuracy"], ["study", "compare"], ["study", "run"]]:
             text = self.done(*command, "--help")
             self.assertLessEqual(max(map(len, text.splitlines())), 80, command)
-            self.assertNotIn("\nOptions:", text)  # each stands in a group
+            self.assertNotIn("\nOptions:", text)  # each option is in a group
             self.says(text, "Usage: earthshine " + "".join(word + " " for word in command) + "[OPTIONS]")
-        # No word is cut: the lines of one entry, put together, are its sentence.
+        # Words are not split: the lines of an entry, joined, are its sentence.
         self.says(" ".join(self.done("render", "--help").split()),
                   "--indirect HOW radiosity (default), distributed (many lights, no interreflection), none, paths (slow reference)")
-        # One name, two meanings: what is written here is read there.
+        # One name with two meanings: output here, input there.
         self.assertRegex(self.done("render", "--help"), r"(?s)What is written:.*--cctv FILE")
 
     def test_version(self):

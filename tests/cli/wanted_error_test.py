@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""--error: the program goes on until its own estimate says so, or names the limit that came first."""
+"""--error: the program continues until its estimate reaches the error, or names the limit that came
+first."""
 import unittest
 
 import exr
 import program
 
-# The ball's scene without settings: patches, rays and samples are the program's to choose.
+# The ball's scene without settings: the program chooses patches, rays and samples.
 OPEN = program.BALL.split("[quality]")[0]
 
 
@@ -31,7 +32,8 @@ class WantedError(program.Case):
         for wanted in (0.2, 0.02):
             rays = self.json("render", "scene.toml", "-o", "out.exr", "--size", "48x36", "--error", wanted)["rays"]
             cast.append(sum(count for count in rays.values() if isinstance(count, int)))
-        self.assertGreater(cast[1], 1.5 * cast[0])  # with the solve's, of 16 rays a patch at either error
+        self.assertGreater(cast[1], 1.5 * cast[0])  # with those of the solve, 16 rays per patch for
+                                                    # either error
 
     def test_parts_add_up_in_squares(self):
         error = self.rendered("--error", 0.05)
@@ -43,7 +45,7 @@ class WantedError(program.Case):
         fixed = OPEN + "[quality]\nerror = 0.001\npatch_edge = 1\nform_factor_rays = 16\n"
         error = self.rendered(scene=fixed)
         self.assertEqual([step["form_factor_rays"] for step in error["steps"] if step["stage"] == "solve"], [16])
-        self.assertIsNone(error["limit"])  # the picture makes up for what the solution lacks
+        self.assertIsNone(error["limit"])  # the picture compensates for errors of the solution
         self.assertLessEqual(error["estimate"], 0.001)
 
     def test_without_sharing_the_rays_that_are_set_win_and_are_named(self):
@@ -59,12 +61,13 @@ class WantedError(program.Case):
         report = self.json("render", "scene.toml", "-o", "out.exr", "--size", "48x36", "--error", 0.001, *few, code=3)
         error = report["error"]
         self.assertEqual(error["limit"], "settings")
-        # The mean of n paths is off by sqrt(1 / n); the stage that draws takes no less than the drawing.
+        # The error of the mean of n paths falls as sqrt(1 / n); the sampling stage takes at least
+        # the time of sampling.
         self.assertGreater(error["seconds_to_go"], 0)
         self.assertLessEqual(error["seconds_to_go"],
                              report["seconds"]["render"] * ((error["estimate"] / 0.001) ** 2 - 1))
         self.assertEqual(self.rendered("--error", 1, *few)["limit"], None)
-        # A scene's own error changes no exit code.
+        # A scene's own wanted error does not change the exit code.
         fixed = self.rendered(*few, scene=OPEN + "[quality]\nerror = 0.001\n")
         self.assertEqual(fixed["limit"], "settings")
 

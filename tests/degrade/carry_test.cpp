@@ -11,9 +11,9 @@
 namespace earthshine::degrade {
 namespace {
 
-// Noise about black of which a share rho is the same in every frame, clamped. The variance of all
-// is that of half a Gaussian, 1/2 - 1/2 pi; two frames share rho / 4 + rho^2 / 4 pi (and rho^4 / 48
-// pi and less, left out); the rest differs from frame to frame.
+// Noise about black with a share rho that is equal in all frames, clamped. The total variance is
+// that of half a Gaussian, 1/2 - 1/2 pi. The covariance of two frames is rho / 4 + rho^2 / 4 pi
+// (terms of rho^4 / 48 pi and less are neglected); the rest differs between frames.
 TEST(Carry, ClampKeepsPatternAndGrainApart) {
   for (const double rho : {0.0, 0.3, 0.8}) {
     Moments m = still(test::flat(5, 4, 0.0F));

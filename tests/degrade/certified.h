@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras and a small bench for the tests of the certificate.
+// Cameras and a small bench for tests of the certificate.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace earthshine::test {
 
-// A tenth of the usual screen's resels, so that a certificate is quick.
+// A tenth of the usual screen's resels, for a fast certificate.
 inline degrade::Monitor small_screen() {
   degrade::Monitor monitor;
   monitor.rows = 96;
@@ -19,7 +19,7 @@ inline degrade::Monitor small_screen() {
   return monitor;
 }
 
-// Every part at work, and no two alike.
+// Every stage on, with parameters that all differ.
 inline degrade::CctvCamera busy_camera() {
   degrade::CctvCamera camera;
   camera.magnification = 0.1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A chain with one mistake in it, for the certificate to find.
+// Chains with one error each, for tests of the certificate.
 #pragma once
 
 #include <algorithm>
@@ -39,7 +39,7 @@ struct Call {
   }
 };
 
-// A mistake changes the call or the linear signal, or makes the whole result.
+// An error changes the call, the linear signal or the whole result.
 struct Defect {
   std::string name, row;
   std::function<Result(Call)> chain;
@@ -55,7 +55,7 @@ inline Defect changed(std::string name, std::string row, const std::function<voi
           }};
 }
 
-// change(signal, resel) where the signal before gamma is looked at.
+// Applies change(signal, resel) where the signal before gamma is measured.
 inline Defect linear(std::string name, std::string row,
                      const std::function<double(double, std::size_t)>& change) {
   return {std::move(name), std::move(row), [change](const Call& call) {
@@ -73,7 +73,7 @@ inline double uniform(std::size_t i) {
   return base::uniform(base::Key(11, base::Stream::Test, 0), i);
 }
 
-// Steps of the line signal by a rule of its own, rule(v in steps, resel).
+// Quantises the line signal by rule(v in steps, resel).
 inline Defect steps(std::string name, std::string row,
                     const std::function<double(double, std::size_t)>& rule) {
   return {std::move(name), std::move(row), [rule](const Call& call) {
@@ -117,7 +117,7 @@ inline Result divided_by_brightest(const Call& call) {
   return result;
 }
 
-// The spot spreads the voltage, and the gamma comes after it.
+// Error: the spot spreads the voltage, and gamma follows.
 inline Result spread_before_gamma(Call call) {
   const degrade::Monitor monitor = call.monitor;
   if (call.leaves_out("screen")) return call.run();
@@ -136,7 +136,7 @@ inline Result spread_before_gamma(Call call) {
   return result;
 }
 
-// Every second pixel of a finer chart is dropped in place of averaging.
+// Error: drops every second pixel of a finer chart instead of averaging.
 inline Result nearest_pixel(const Call& call) {
   const base::Image& in = call.chart;
   if (in.width != 2 * call.monitor.columns) return call.run();

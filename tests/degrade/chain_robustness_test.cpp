@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures that nobody wishes for: an answer or a clear error.
+// Extreme pictures: a result or a clear error.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -33,15 +33,15 @@ TEST(Chain, StageNamesAreUniqueAndUnitsFitTogether) {
   std::string_view unit = "cd/m^2";
   for (const Stage& stage : stages()) {
     EXPECT_TRUE(names.insert(stage.name).second) << stage.name;
-    // A linear signal on the line is a line signal with gamma 1.
+    // On the line a linear signal is a line signal with gamma 1.
     EXPECT_TRUE(stage.in == unit || stage.in == "line signal") << stage.name;
     unit = stage.out;
   }
   EXPECT_EQ(unit, "cd/m^2");
 }
 
-// `plan` says by them why a stage runs: each is a field of the camera or of the monitor. A stage
-// that has none depends on none, so it runs for any settings.
+// `plan` uses these names to say why a stage runs: each is a field of the camera or of the monitor.
+// A stage without settings must run for all settings.
 TEST(Chain, ARowNamesTheSettingsThatDecide) {
   std::set<std::string, std::less<>> fields;
   degrade::Setup bare{linear_camera(), {}, {}};
@@ -133,8 +133,8 @@ TEST(Chain, NoiseFreeTwinHasTheSameExposure) {
 }
 
 // z = (mean of n frames - twin) / (sigma(S) / sqrt(n)) has mean 0 and variance 1 over the N resels
-// if signal and noise law are what they should be: mean z within 4 / sqrt(N), mean z^2 within 4
-// sqrt(2 / N) of 1.
+// if signal and noise law are correct: mean z within 4 / sqrt(N), mean z^2 within 4 sqrt(2 / N) of
+// 1.
 TEST(Chain, MeanOfManyFramesIsTheTwinWithTheVarianceOfTheLaw) {
   CctvCamera camera = linear_camera();
   camera.noise = NoiseMode::Law;
@@ -171,8 +171,8 @@ TEST(Chain, MeanOfManyFramesIsTheTwinWithTheVarianceOfTheLaw) {
   EXPECT_NEAR(z2, 1.0, 4.0 * std::sqrt(2.0 / count));
 }
 
-// The blur comes after the noise of the light: grain, neighbours alike. The amplifier's noise comes
-// after the blur.
+// Blur follows the noise of the light, which becomes grain with correlated neighbours. The
+// amplifier's noise follows the blur.
 TEST(Chain, LightNoiseIsBlurredAmplifierNoiseIsNot) {
   CctvCamera camera = linear_camera();
   camera.blur_h = camera.blur_v = 1.0;
@@ -229,8 +229,8 @@ TEST(Chain, SquarePictureIsWrittenSquareAtThreePixelsPerResel) {
   EXPECT_EQ(result.pixels.size(), 900U * 900U);
 }
 
-// White on the screen is white in the file; black is the screen's black and the room's light:
-// (1 + 0.796) / (100 + 0.796) = 0.01782, sRGB 0.1422, times 255 = 36.
+// White on the screen is white in the file. Black is the screen's black plus room light: (1 +
+// 0.796) / (100 + 0.796) = 0.01782, sRGB 0.1422, times 255 = 36.
 TEST(Chain, FileShowsTheScreenUnderTheRoomsLight) {
   CctvCamera camera = linear_camera();
   EXPECT_EQ(degrade(test::grey(4, 3, 1.0F), camera, {}).pixels[0], 255);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entries of covariances and of maps, as the full matrices they stand for.
+// Covariances and maps as full matrices.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ inline std::size_t at(int x, int y, int columns) {
          static_cast<std::size_t>(x);
 }
 
-// Cov(n(x, y), n(u, v)), from whichever half holds it; 0 where the offset was dropped.
+// Cov(n(x, y), n(u, v)) from the stored half; 0 if the offset was dropped.
 inline double entry(const Covariance& c, int x, int y, int u, int v) {
   if (v < y || (v == y && u < x)) return entry(c, u, v, x, y);
   const auto found = std::find(c.offsets.begin(), c.offsets.end(), degrade::Offset{u - x, v - y});
@@ -28,7 +28,7 @@ inline double entry(const Covariance& c, int x, int y, int u, int v) {
       c.planes[static_cast<std::size_t>(found - c.offsets.begin())][at(x, y, c.columns)]);
 }
 
-// weight(i, j) of a map as a full matrix.
+// Weights w(i, j) of a map as a full matrix.
 inline std::vector<double> matrix(const AxisMap& map) {
   std::vector<double> m(static_cast<std::size_t>(map.out() * map.in));
   for (int i = 0; i < map.out(); ++i) {
@@ -57,7 +57,7 @@ inline AxisMap composed(const AxisMap& first, const AxisMap& second) {
   return map;
 }
 
-// A filter with negative weights and no symmetry.
+// An asymmetric filter with negative weights.
 inline AxisMap lopsided(int size) {
   AxisMap map;
   map.in = size;

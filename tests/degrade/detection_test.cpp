@@ -15,7 +15,7 @@ namespace {
 constexpr int field_columns = 41, field_rows = 31;
 constexpr std::size_t pixels = 41 * 31, centre = 15 * 41 + 20;
 
-// A square of `edge` resels in the middle of the picture.
+// A square of `edge` resels in the centre of the picture.
 Plane square(int edge, float inside, float outside) {
   Plane plane(pixels, outside);
   for (int y = 15 - edge / 2; y <= 15 + edge / 2; ++y) {
@@ -37,9 +37,9 @@ TEST(Detection, RosesKOfASquareInWhiteNoiseIsItsClosedForm) {
   EXPECT_NEAR(found.signal[centre], 0.03, 1e-6);
   EXPECT_NEAR(found.snr[centre], k, 1e-5 * k);
   EXPECT_NEAR(found.probability[centre], normal_probability(k - 2.8), 1e-5);
-  // Two resels aside the target box holds 3 of the 5 columns and the surround the other two.
+  // Two resels aside, the target box contains 3 of the 5 columns, the surround the other two.
   EXPECT_NEAR(found.signal[centre + 2], 0.03 * (15.0 / 25.0 - 10.0 / 96.0), 1e-6);
-  // A darker target is seen as well.
+  // A darker target has the same SNR.
   EXPECT_NEAR(detection(square(5, 0.47F, 0.5F), white_noise(0.04)).snr[centre], k, 1e-5 * k);
 }
 
@@ -52,9 +52,9 @@ TEST(Detection, SnrOfTwoPointEightIsSeenHalfTheTime) {
               0.841345, 1e-5);
 }
 
-// Blur makes grain with the autocovariance R(k) R(l), R(k) = e^-2t I_k(2t). The sum over boxes of m
-// and n resels about one centre has the covariance (sum over i, j of R(i - j))^2. Compared with
-// white noise of the same variance at each resel the means of boxes are noisier.
+// Blur makes grain with the autocovariance R(k) R(l), R(k) = e^-2t I_k(2t). The sums over
+// concentric boxes of m and n resels have the covariance (sum over i, j of R(i - j))^2. Means of
+// boxes are noisier than for white noise of the same variance per resel.
 TEST(Detection, GrainLowersItAsItsAutocorrelationSays) {
   for (const double blur : {0.35, 1.0}) {
     const Covariance grain = filtered(white_noise(0.1), gaussian_blur(field_columns, blur),
@@ -81,8 +81,8 @@ TEST(Detection, GrainLowersItAsItsAutocorrelationSays) {
   }
 }
 
-// Drawn noise: the difference of the two means over N frames has the predicted variance, within
-// four times sqrt(2 / N M) for M places far apart, corners among them.
+// Sampled noise: the difference of the two means over N frames has the predicted variance, within
+// four times sqrt(2 / N M) for M distant positions, including corners.
 TEST(Detection, DrawnGrainHasThePredictedNoise) {
   constexpr int frames = 400;
   const AxisMap along = gaussian_blur(field_columns, 0.8), across = gaussian_blur(field_rows, 0.5);
@@ -121,7 +121,7 @@ TEST(Detection, WithoutNoiseWhatDiffersIsSeenAndWhatDoesNotIsNot) {
   const Detection found = detection(square(5, 0.7003F, 0.7F), white_noise(0.0));
   EXPECT_EQ(found.snr[centre], static_cast<float>(most_snr));
   EXPECT_EQ(found.probability[centre], 1.0F);
-  // Far from the square all is flat: rounding is no signal.
+  // Far from the square the picture is flat: rounding must not give a signal.
   for (const std::size_t i : {std::size_t{0}, std::size_t{400}, pixels - 1}) {
     EXPECT_EQ(found.signal[i], 0.0F);
     EXPECT_EQ(found.snr[i], 0.0F);
@@ -133,7 +133,7 @@ TEST(Detection, PicturesWithoutASurroundShowNothing) {
   const Detection one = detection({0.5F}, white(1, 1, {0.1F}));
   EXPECT_EQ(one.snr[0], 0.0F);
   const Detection small = detection({0.5F, 0.7F}, white(2, 1, {0.1F, 0.1F}), {1, 2.8});
-  // Each is the other's surround: 0.2 / sqrt(0.1 + 0.1).
+  // Each resel is the other's surround: 0.2 / sqrt(0.1 + 0.1).
   EXPECT_NEAR(small.snr[0], 0.2 / std::sqrt(0.2), 1e-5);
 }
 

@@ -23,7 +23,7 @@ inline base::Image grey(int width, int height, float value) {
   return image;
 }
 
-// Linear, fixed exposure: the signal is the radiance (pi tau / (4 N^2 E_white) = 1).
+// Linear with fixed exposure: the signal is the radiance (pi tau / (4 N^2 E_white) = 1).
 inline degrade::CctvCamera linear_camera() {
   degrade::CctvCamera camera;
   camera.iris = degrade::IrisMode::Fixed;
@@ -37,7 +37,7 @@ inline degrade::CctvCamera linear_camera() {
 
 inline double slope(double x, double y) { return 0.3 + 0.5 * x + 0.2 * y; }
 
-// f(x, y) with x and y from 0 to 1 across the picture.
+// A picture of f(x, y), with x and y from 0 to 1.
 template <class F>
 base::Image painted(int width, int height, F f) {
   base::Image image = grey(width, height, 0.0F);
@@ -67,7 +67,7 @@ inline Moments moments(const degrade::Plane& values) {
   return m;
 }
 
-// Correlation coefficient of two planes, b shifted by (dx, dy) against a.
+// Correlation coefficient of two planes; b is shifted by (dx, dy).
 inline double correlation(const degrade::Plane& a, const degrade::Plane& b, int columns, int rows,
                           int dx, int dy) {
   const Moments ma = moments(a), mb = moments(b);

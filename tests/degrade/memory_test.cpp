@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a camera carries from frame to frame: its iris and the charge that lags.
+// State of a camera between frames: its iris and the charge of lag.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,15 +28,15 @@ Result next(const base::Image& scene, const CctvCamera& camera, std::uint64_t fr
   return degrade(scene, camera, {}, options, before);
 }
 
-// x = ln N^2: x_(j+1) = x_j + g (x* - x_j), so the error is (1 - g)^j of the first, exactly; no
-// overshoot up to g = 1, alternating between 1 and 2, growing above 2.
+// x = ln N^2: x_(j+1) = x_j + g (x* - x_j), so that the error is exactly (1 - g)^j of the first
+// one. No overshoot up to g = 1, alternation between 1 and 2, divergence above 2.
 TEST(IrisInMotion, ErrorFallsByOneMinusTheRateEachFrame) {
   for (const double rate : {0.2, 0.5, 1.6, 2.2}) {
     CctvCamera camera = linear();
     camera.iris_rate = rate;
     Memory memory = next(grey(40, 30, 10.0F), camera, 0, {}).memory;
     const double start = 2.0 * std::log(*memory.f_number);
-    const double goal = start + std::log(50.0);  // scene 50 times as bright
+    const double goal = start + std::log(50.0);  // the scene is 50 times as bright
     for (std::uint64_t j = 1; j < 5; ++j) {
       const Result result = next(grey(40, 30, 500.0F), camera, j, memory);
       memory = result.memory;
@@ -47,7 +47,7 @@ TEST(IrisInMotion, ErrorFallsByOneMinusTheRateEachFrame) {
   }
 }
 
-// 50 times the light is 5.64 stops: at one stop a frame, N grows by sqrt 2 five times.
+// 50 times the light is 5.64 stops: at one stop per frame N grows by sqrt 2 five times.
 TEST(IrisInMotion, SlewLimitsTheStopsOfAFrame) {
   CctvCamera camera = linear();
   camera.iris_slew = 1.0;
@@ -60,15 +60,15 @@ TEST(IrisInMotion, SlewLimitsTheStopsOfAFrame) {
   }
 }
 
-// While the iris is still closed from a bright scene the picture is dark: signal falls by the ratio
-// of the light.
+// While the iris is still closed after a bright scene, the picture is dark: the signal falls by the
+// ratio of the light.
 TEST(IrisInMotion, SlowIrisLeavesTheSuddenlyDarkSceneDark) {
   CctvCamera camera = linear();
   camera.iris_slew = 0.5;
   const Memory bright = next(grey(40, 30, 1000.0F), camera, 0, {}).memory;
   const Result dark = next(grey(40, 30, 10.0F), camera, 1, bright);
   EXPECT_NEAR(dark.signal.channels[0].values[0], 0.01 * std::exp2(0.5), 1e-5);
-  // On its way it is no failure of its range; at rest in the dark it would be.
+  // A moving iris is not underexposed; at rest in the dark it is.
   EXPECT_TRUE(dark.report.exposure.moving);
   EXPECT_FALSE(dark.report.exposure.underexposed);
   camera.f_number_min = 100.0;
@@ -84,7 +84,7 @@ TEST(IrisInMotion, AtOnceNeedsNoMemory) {
             next(grey(40, 30, 10.0F), camera, 1, {}).pixels);
 }
 
-// A light that goes out is left with lag^(2 j) after j frames: two fields each.
+// After a light goes out, lag^(2 j) of it remains after j frames of two fields each.
 TEST(LagOfASequence, LightThatGoesOutFadesByTwoFieldsAFrame) {
   for (const bool interlace : {false, true}) {
     CctvCamera camera = linear();
@@ -102,8 +102,8 @@ TEST(LagOfASequence, LightThatGoesOutFadesByTwoFieldsAFrame) {
   }
 }
 
-// A still scene: every frame has the same noise variance, v (1 - l) / (1 + l), and frames correlate
-// as l^2.
+// A still scene: every frame has the noise variance v (1 - l) / (1 + l), and the correlation of
+// frames is l^2.
 TEST(LagOfASequence, StillSceneHasTheSameNoiseInEveryFrame) {
   CctvCamera camera = linear();
   camera.iris = IrisMode::Average;

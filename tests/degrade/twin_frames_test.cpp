@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// V35: frames of a tube camera, with the noise of neighbours and of the two fields shared, against
-// the twin.
+// V35: frames of a tube camera, with noise correlated between neighbours and between fields,
+// against the twin.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,13 +16,14 @@ namespace {
 
 constexpr int columns = 40, rows = 30, frames = 300;
 
-// A tube: grain of light through lag, target and line, amplifier noise, clamp, clip and gamma, two
-// fields. Luminance 1 is signal 1.
+// A tube: grain of the light through lag, target and line; amplifier noise, clamp, clip and gamma;
+// two fields. Luminance 1 is signal 1.
 Setup tube() {
   Setup setup;
   setup.monitor.columns = columns;
   setup.monitor.rows = rows;
-  setup.monitor.spread_width = 2.0;  // over several lines: what the fields share counts
+  setup.monitor.spread_width = 2.0;  // covers several lines, so that the correlation of the fields
+                                     // matters
   CctvCamera& camera = setup.camera;
   camera.iris = IrisMode::Fixed;
   camera.white_lux = base::pi * camera.transmittance / (4.0 * camera.f_number * camera.f_number);
@@ -32,15 +33,15 @@ Setup tube() {
   camera.blur_h = 0.5;
   camera.blur_v = 0.8;
   camera.lag = 0.4;
-  camera.bandwidth_mhz = 0.3;  // 40 resels to a line: cycles of 2.5 resels
+  camera.bandwidth_mhz = 0.3;  // 40 resels per line: cycles of 2.5 resels
   camera.interlace = true;
   return setup;
 }
 
-// Mean and variance over the N frames at M places far enough apart to be independent, against the
-// prediction: the sum of the squared standardised errors of the means is chi-squared with M degrees
-// of freedom; each mean squared error has the variance (fourth moment - square of the second) / N,
-// from the frames themselves, as clamped noise is not Gaussian.
+// Mean and variance over N frames at M positions, far enough apart to be independent, against the
+// prediction. The sum of the squared standardised errors of the means is chi-squared with M degrees
+// of freedom. Each mean squared error has the variance (fourth moment - square of the second) / N,
+// measured from the frames, because clamped noise is not Gaussian.
 class Comparison {
  public:
   Comparison(int width, int height, int step) {
@@ -85,7 +86,7 @@ void expect_stated(const base::Image& scene, const Setup& setup) {
   const Twin stated = twin(scene, setup.camera, setup.monitor);
   Comparison line(columns, rows, 7), seen(3 * columns, 3 * rows, 17);
   for (std::uint64_t k = 0; k < frames; ++k) {
-    // Every other frame: the charge of the field before the first is part of a frame's noise.
+    // Every other frame: the charge of the field before the first one is part of a frame's noise.
     const Options options{.seed = 4, .frame = 2 * k + 1, .off = {}};
     const Result result = degrade(scene, setup.camera, setup.monitor, options);
     line.add(result.signal.channels[0].values, stated.mean.planes[0]);
@@ -103,8 +104,8 @@ TEST(TwinFrames, LineAndScreenOfAGreyWedgeAreAsStated) {
       setup);
 }
 
-// Much of the noise is clamped at black and, by the screen, at white: no small-noise expansion
-// holds there.
+// Much of the noise is clamped at black and, by the screen, at white; expansions for small noise
+// fail there.
 TEST(TwinFrames, LineAndScreenOfClampedBlackAndClippedWhiteAreAsStated) {
   expect_stated(
       test::painted(columns, rows,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of the twin that have a closed form of their own.
+// Parts of the twin that have a closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,14 +13,14 @@ namespace {
 
 using test::grey;
 
-// 1 cd/m^2 is white; linear and without limits.
+// 1 cd/m^2 is white; linear, without limits.
 CctvCamera linear() {
   CctvCamera camera = test::linear_camera();
   camera.black_clamp = false;
   return camera;
 }
 
-// Without any filter the variance is the law's own, patterns and dark counts included.
+// Without filters the variance is the law, including patterns and dark counts.
 TEST(TwinParts, VarianceOfABareSensorIsTheLaw) {
   CctvCamera camera = linear();
   camera.noise = NoiseMode::Photon;
@@ -39,8 +39,8 @@ TEST(TwinParts, VarianceOfABareSensorIsTheLaw) {
   }
 }
 
-// Steady light behind lag: only what is drawn anew each field shrinks, by (1 - l^2) / (1 + l^2) for
-// frames of two fields.
+// Steady light with lag: only noise that is new in each field is reduced, by (1 - l^2) / (1 + l^2)
+// for frames of two fields.
 TEST(TwinParts, LagShrinksGrainAndLeavesPatterns) {
   CctvCamera camera = linear();
   camera.noise = NoiseMode::Photon;
@@ -52,7 +52,7 @@ TEST(TwinParts, LagShrinksGrainAndLeavesPatterns) {
   EXPECT_NEAR(stated.variance.planes[0][777] / expected, 1.0, 1e-5);
 }
 
-// No noise: the mean through bloom and saturation is the picture itself.
+// Without noise, the mean after bloom and saturation is the picture.
 TEST(TwinParts, MeanBehindBloomIsTheNoiseFreePicture) {
   CctvCamera camera = linear();
   camera.saturation = 1.0;
@@ -66,8 +66,8 @@ TEST(TwinParts, MeanBehindBloomIsTheNoiseFreePicture) {
   }
 }
 
-// The planes of a colour camera have noise of their own: the luminance's variance is the sum of the
-// squared weights of Rec. 709, 0.2126^2 + 0.7152^2 + 0.0722^2 = 0.5619, times that of one.
+// The planes of a colour camera have independent noise: the variance of luminance is 0.2126^2 +
+// 0.7152^2 + 0.0722^2 = 0.5619 of one plane's variance (squared weights of Rec. 709).
 TEST(TwinParts, LuminanceOfThreePlanesIsLessNoisyThanOne) {
   CctvCamera camera = linear();
   camera.colour = true;
@@ -80,8 +80,8 @@ TEST(TwinParts, LuminanceOfThreePlanesIsLessNoisyThanOne) {
   EXPECT_NEAR(stated.snr[777], 0.5 / (0.01 * std::sqrt(weights2)), 0.01);
 }
 
-// Crushed is what does not rise above the amplified noise of black: with gain 4 and sigma 1 % that
-// is a signal of 0.04 behind the gain, 0.01 before it.
+// Crushed: not above the amplified noise of black. With gain 4 and sigma 1 % this is a signal of
+// 0.04 after the gain, 0.01 before it.
 TEST(TwinParts, CrushedIsJudgedBehindTheGain) {
   CctvCamera camera = linear();
   camera.gain_db = 20.0 * std::log10(4.0);
@@ -91,7 +91,7 @@ TEST(TwinParts, CrushedIsJudgedBehindTheGain) {
   EXPECT_EQ(twin(grey(40, 30, 0.0102F), camera, {}).crushed[777], 0.0F);
 }
 
-// A twin of its own memory sees the iris where the noisy camera's stands.
+// A twin with its own memory has the same iris as the noisy camera.
 TEST(TwinParts, FollowsTheIrisOfASequence) {
   CctvCamera camera = linear();
   camera.iris = IrisMode::Peak;
@@ -110,7 +110,7 @@ TEST(TwinParts, FollowsTheIrisOfASequence) {
   }
 }
 
-// A luminance camera looks at a colour picture's luminance, also where no stage of the lens runs.
+// A luminance camera uses a colour picture's luminance, also if no stage of the lens runs.
 TEST(TwinParts, WithoutALensThePictureIsStillTheCameras) {
   base::Image grey_in_colour = base::make_rgb_image(40, 30);
   for (base::Channel& channel : grey_in_colour.channels) channel.values.assign(1200, 0.5F);

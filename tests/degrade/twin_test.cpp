@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twin against the noisy pictures whose moments it states.
+// The twin against noisy pictures.
 #include "degrade/twin.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ Monitor small(Spread spread = Spread::Gaussian) {
   return monitor;
 }
 
-// Exposed so that 100 cd/m^2 is white.
+// Exposure with white at 100 cd/m^2.
 CctvCamera exposed() {
   CctvCamera camera;
   camera.iris = IrisMode::Fixed;
@@ -45,7 +45,7 @@ CctvCamera exposed() {
   return camera;
 }
 
-// Mean and variance over the frames, of the line signal and of what is seen.
+// Mean and variance over the frames, of the line signal and of the screen.
 struct Sampled {
   std::vector<double> sum, squares;
   void add(const std::vector<float>& values) {
@@ -78,11 +78,10 @@ Both sample(const CctvCamera& camera, const Monitor& monitor) {
   return both;
 }
 
-// z of a mean is (mean - stated) / sqrt(stated variance / frame_count); z of a variance is (s^2 /
-// stated
-// - 1) / sqrt((kurtosis - 1) / frame_count), sqrt(2 / frame_count) where the noise is Gaussian.
-// Over all pixels the mean of z^2 must be 1. Neighbours correlate, over some `grain` pixels each,
-// so the mean of z^2 over M pixels has the standard error sqrt(2 grain / M).
+// z of a mean is (mean - stated) / sqrt(stated variance / frame_count). z of a variance is
+// (s^2 / stated - 1) / sqrt((kurtosis - 1) / frame_count), with sqrt(2 / frame_count) for Gaussian
+// noise. Over all pixels the mean of z^2 must be 1. Neighbours are correlated over some `grain`
+// pixels, so that the mean of z^2 over M pixels has the standard error sqrt(2 grain / M).
 struct Pull {
   double mean2 = 0.0, variance2 = 0.0, bias = 0.0, ratio = 0.0;
   std::size_t pixels = 0;
@@ -120,7 +119,7 @@ void expect_honest(const Pull& p, double grain, const std::string& what) {
 
 constexpr auto nowhere = [](std::size_t) { return false; };
 
-// Every linear stage, no clamp and no gamma: all of it exact.
+// Every linear stage without clamp and gamma: the twin is exact.
 TEST(Twin, MomentsOfLinearStagesAreThoseOfTheNoisyPictures) {
   CctvCamera camera = exposed();
   camera.gamma = 1.0;
@@ -142,7 +141,7 @@ TEST(Twin, MomentsOfLinearStagesAreThoseOfTheNoisyPictures) {
     const std::string what = interlace ? "interlaced" : "progressive";
     expect_honest(pull(seen.signal, stated.mean.planes[0], stated.variance.planes[0], nowhere), 4.0,
                   what);
-    // The screen clamps at white and black: where the signal keeps 5 sigma off both.
+    // The screen clamps at white and black: compared only where the signal is 5 sigma off both.
     const auto clipped = [&](std::size_t i) {
       const std::size_t x = i % 192 / 3, y = i / 192 / 3;
       for (std::size_t v = y < 4 ? 0 : y - 4; v < std::min<std::size_t>(48, y + 5); ++v) {
@@ -160,7 +159,7 @@ TEST(Twin, MomentsOfLinearStagesAreThoseOfTheNoisyPictures) {
   }
 }
 
-// The mean of the frames is the noise-free twin wherever nothing is clipped: 4 sigma / 20.
+// The mean of the frames is the noise-free twin where nothing is clipped: within 4 sigma / 20.
 TEST(Twin, MeanOfManyFramesIsTheNoiseFreeTwinWhereNothingClips) {
   CctvCamera camera = exposed();
   camera.gamma = 1.0;
@@ -175,17 +174,17 @@ TEST(Twin, MeanOfManyFramesIsTheNoiseFreeTwinWhereNothingClips) {
     if (std::abs(seen.signal.mean(i) - s) > 4.0 * sigma / 20.0) ++outside;
   }
   EXPECT_GT(compared, 1000U);
-  EXPECT_LE(outside, 2U);  // 6e-5 of them by chance
+  EXPECT_LE(outside, 2U);  // 6e-5 of them are expected
 }
 
-// With clamps, gamma, gain and 6 bits the noise is no Gaussian any more, but mean and variance of
-// every pixel are still those stated, also in black and white.
+// With clamps, gamma, gain and 6 bits the noise is not Gaussian, but the stated mean and variance
+// of every pixel hold, also in black and white.
 TEST(Twin, MomentsBehindClampsGammaAndQuantisationAreThoseOfTheNoisyPictures) {
   CctvCamera camera = exposed();
   camera.blur_h = camera.blur_v = 0.4;
   camera.gain_db = 6.0;
   camera.noise_a = 4e-4;
-  camera.noise_b = 2e-4;  // counts are many, so that the light's noise is Gaussian
+  camera.noise_b = 2e-4;  // many counts, so that the light's noise is Gaussian
   camera.bits = 6;
   const Both seen = sample(camera, small());
   const Twin stated = twin(scene(), camera, small());
@@ -209,7 +208,7 @@ TEST(Twin, IsTheChainWithoutNoiseBitForBit) {
   }
 }
 
-// No noise: mean = twin, variance 0, everything that differs from its surround is seen.
+// Without noise: mean = twin, variance 0, and every difference from the surround is detected.
 TEST(Twin, CameraWithoutNoiseHasNoVarianceAndSeesEveryDifference) {
   CctvCamera camera = exposed();
   camera.noise = NoiseMode::None;
@@ -222,8 +221,8 @@ TEST(Twin, CameraWithoutNoiseHasNoVarianceAndSeesEveryDifference) {
   EXPECT_EQ(stated.detection.probability[24 * 64 + 22], 1.0F);  // at the edge
 }
 
-// Masks: the bar of four times white is white, and nothing else; with the noise of black at 1 % of
-// white, what shows less than that is crushed.
+// Masks: only the bar of four times white is white. The noise of black is 1 % of white; smaller
+// signals are crushed.
 TEST(Twin, MasksAreWhiteAndTheNoiseOfBlack) {
   const CctvCamera camera = exposed();
   const Twin stated = twin(scene(), camera, small());
@@ -239,8 +238,8 @@ TEST(Twin, MasksAreWhiteAndTheNoiseOfBlack) {
   }
 }
 
-// A darker square of 5 x 5 resels, contrast 3 %: the more noise, the less likely it is seen; and at
-// SNR_D = 2.8 in half of all cases.
+// A darker square of 5 x 5 resels, contrast 3 %: the probability of detection falls with the noise
+// and is one half at SNR_D = 2.8.
 TEST(Twin, ProbabilityOfDetectionFallsWithTheNoise) {
   const base::Image square = test::painted(64, 48, [](double x, double y) {
     const bool inside = x * 64 >= 30 && x * 64 < 35 && y * 48 >= 20 && y * 48 < 25;

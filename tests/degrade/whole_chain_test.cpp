@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The chain with every stage on: the corner of a picture, and what another machine must get too.
+// The chain with every stage on: the corner of a picture, and recorded moments for other machines.
 #include <gtest/gtest.h>
 
 #include "degrade/chain.h"
@@ -13,9 +13,9 @@ using test::linear_camera;
 using test::painted;
 using test::slope;
 
-// A corner of the scene seen on a corner of the grid is that corner of the picture, as far as the
-// blur does not reach: noise is keyed by place, and what looks at the whole (meter, glare) is
-// fixed.
+// The corner of a scene on the corner of the grid is the corner of the picture, outside the reach
+// of the blur. Noise is keyed by position; stages that depend on the whole picture (meter, glare)
+// are fixed.
 TEST(WholeChain, CornerOfThePictureIsThePictureOfTheCorner) {
   CctvCamera camera = linear_camera();
   camera.blur_h = camera.blur_v = 0.35;
@@ -27,7 +27,7 @@ TEST(WholeChain, CornerOfThePictureIsThePictureOfTheCorner) {
   whole.rows = 80;
   whole.columns = 100;
   corner.rows = 40;
-  corner.columns = 100;  // the line's time is that of the whole screen
+  corner.columns = 100;  // a line of the whole screen has the line's time
   const base::Image in = painted(100, 80, slope);
   base::Image part = test::grey(50, 40, 0.0F);
   for (std::size_t i = 0; i < part.pixel_count(); ++i) {
@@ -45,8 +45,8 @@ TEST(WholeChain, CornerOfThePictureIsThePictureOfTheCorner) {
   }
 }
 
-// What one machine and compiler made, another must make: moments of a picture through every stage.
-// A power or a logarithm rounded otherwise moves single values by 1e-7 of themselves.
+// Recorded moments of a picture through every stage, which other machines and compilers must
+// reproduce. Different rounding of a power or a logarithm changes single values by a relative 1e-7.
 TEST(WholeChain, EveryStageTogetherGivesTheRecordedMoments) {
   CctvCamera camera = find_preset("sit-monochrome")->camera;
   camera.fall_off = 4.0;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiosity with final gather and the path tracer draw the same picture: z-tests on pictures of
-// both (tests/support/agreement.h). The path tracer leaves out what the gather does not carry
-// (PathSet::NoCaustics), but where there is nothing of the kind.
+// Radiosity with final gather and the path tracer give the same picture: z-tests between pictures
+// of both (tests/support/agreement.h). The path tracer omits caustics, which the gather does not
+// have (PathSet::NoCaustics), except in scenes without them.
 //
-// The gather's variance is the spread of eight pictures that differ by their seed. They read one
-// solution: its own noise (form factors by 512 rays) moves the mean of a picture by 0.03 %
-// (standard deviation over solve seeds), a third of the smallest standard error here.
+// The gather's variance is the scatter of eight pictures with different seeds. They read one
+// solution. Its noise (form factors by 512 rays) moves the mean of a picture by 0.03 % (standard
+// deviation over solve seeds), a third of the smallest standard error here.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -64,9 +64,10 @@ tests::Agreement agreement(const scenes::Scene& scene, const Effort& effort) {
                         static_cast<std::size_t>(effort.paths));
 }
 
-// Mean z is 0, mean z^2 that of Student's t, the ratio of the pictures' means 1, each within four
-// standard errors; those of the first two come from the spread over the pixels. A test that would
-// let an error of 2.5 % of the picture's mean pass is no test.
+// Within four standard errors, mean z is 0, mean z^2 is the value of Student's t, and the ratio of
+// the pictures' means is 1. The standard errors of the first two are from the scatter over the
+// pixels. The last check guards the power of the test: it must detect a difference of 2.5 % in the
+// mean.
 void expect_agreement(const tests::Agreement& a) {
   const auto n = static_cast<double>(a.pixels);
   EXPECT_GT(n, 400);
@@ -78,17 +79,17 @@ void expect_agreement(const tests::Agreement& a) {
   EXPECT_LT(4.0 * a.ratio_std_error, 0.025);
 }
 
-// How fine the patches must be, from pictures of 4 096 paths per pixel.
-// Refined, as here, the gather's mean is off by
+// Required number of patches, from pictures of 4 096 paths per pixel. With refinement, as here, the
+// error of the gather's mean is
 //   Cornell box, 3 200 / 6 000 / 15 000 patches   mean z -0.26 / -0.04 / -0.02
 //   furnace, 4 000 / 13 000                       -0.2 / -0.07 %
 //   bay by day, 6 000                             -0.06 %
 //   bay by night, 6 000 / 15 000                  -0.12 / -0.10 +- 0.04 %
-// and below the noise: over ten seeds the Cornell box's mean z, of 1 024 rays and paths, is
-// -0.05 +- 0.014, a third of its four standard errors. Cut evenly, patches converge slowly where
-// bodies touch, since a patch partly under a box shines into the box: -3.1 / -1.9 / -1.1 % for
-// 525 / 2 100 / 8 237 patches in the furnace, but -0.05 % for 533 with its box lifted off the
-// floor.
+// This is below the noise: over ten seeds the Cornell box's mean z, of 1 024 rays and paths, is
+// -0.05 +- 0.014, a third of its four standard errors. Uniform patches converge slowly where bodies
+// touch, because a patch partly under a box shines into the box: -3.1 / -1.9 / -1.1 % for
+// 525 / 2 100 / 8 237 patches in the furnace, but -0.05 % for 533 patches with its box lifted off
+// the floor.
 TEST(Agreement, CornellBox) {
   expect_agreement(agreement(read("tests/data/peers/cornell/scene.toml"), {0.5, 6000, 640, 1024}));
 }
@@ -103,9 +104,10 @@ TEST(Agreement, CornellBoxWithAMirrorForAWall) {
   expect_agreement(agreement(scene, {0.5, 6000, 512, 512}));
 }
 
-// A room of two halves with a coloured pane between, that mirrors a little, and a mirror for a
-// wall; the lamp is in the other half. Of point lamps no path meets what shadow rays do not bring,
-// so that all paths may be asked: what glass lets through and mirrors throw counts once in both.
+// A room in two halves, with a coloured, slightly mirroring pane between them and a mirror as one
+// wall; the lamp is in the other half. Shadow rays carry all light of point lamps that paths could
+// carry, so that all paths are compared: light through glass and from mirrors must count once in
+// both.
 TEST(Agreement, RoomLitThroughAPane) {
   tests::SceneBuilder builder;
   const std::uint32_t wall = builder.material(tests::grey(0.5));
@@ -142,7 +144,7 @@ TEST(Agreement, BayByDay) {
   expect_agreement(agreement(read("tests/data/peers/bay/scene.toml"), {}));
 }
 
-// Broad lobes on all but the box, whose lobe is sharp enough to be followed.
+// Broad lobes everywhere except on the box, whose lobe is sharp and is traced.
 TEST(Agreement, GlossyBayByDay) {
   scenes::Scene scene = read("tests/data/peers/bay/scene.toml");
   for (scenes::Material& material : scene.materials) {
@@ -171,12 +173,11 @@ TEST(Agreement, BayByNightUnderFloods) {
   expect_agreement(agreement(scene, {}));
 }
 
-// The shipped bay has bodies that touch and small parts everywhere. With 20 000 patches, refined,
-// the gather's mean is off the path tracer's (8 192 and 4 096 paths: +- 0.06, 0.23 %) by
-//   by earthshine, camera B -0.27, A 0.00; by night, B -0.28 %
-// (-1.6, -1.8 and -1.2 % while patches shone into the bodies on them). 1 % is granted. Spots
-// of light a hand away from the lamps leave specks in the path tracer's picture by night: its
-// pixels are far from a normal distribution there, its mean is not.
+// The shipped bay has touching bodies and small parts everywhere. With 20 000 refined patches, the
+// gather's mean differs from the path tracer's (8 192 and 4 096 paths: +- 0.06, 0.23 %) by
+//   earthshine: camera B -0.27 %, A 0.00 %; night: B -0.28 %
+// The tolerance is 1 %. By night, spots of light close to the lamps leave outliers in the path
+// tracer's picture: its pixels are far from normally distributed, but its mean is not.
 class Sts46Agreement : public testing::TestWithParam<const char*> {};
 
 TEST_P(Sts46Agreement, PicturesHaveTheSameMean) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library of closed forms by rays, with a fraction of the rays that `./dev validate` takes.
+// The closed-form library by rays, with a fraction of the rays of `./dev validate`.
 #include <gtest/gtest.h>
 
 #include "tests/support/case_library.h"
@@ -23,7 +23,7 @@ TEST(CaseLibrary, EveryCaseHasASceneOrAReason) {
       continue;
     }
     ++refused;
-    // Love's kernel belongs to no diffuse surfaces.
+    // Love's equation has a kernel that no diffuse surfaces have.
     EXPECT_EQ(record.name.rfind("love_equation", 0), 0U) << record.name << ": " << made.refusal;
   }
   EXPECT_EQ(refused, 2U);
@@ -40,7 +40,7 @@ TEST(CaseLibrary, FormFactorsOfSmallScenesAreWithinFourStandardErrors) {
     ++run;
     EXPECT_TRUE(found.agrees(*made.built)) << record.name << ": " << found.computed << " +- "
                                            << found.std_error << ", exact " << record.value;
-    // An error bar as wide as the value would pass anything.
+    // A standard error as large as the value would pass everything.
     EXPECT_LE(found.std_error, std::max(0.05 * record.value, 4e-4)) << record.name;
   }
   EXPECT_GE(run, 40U);

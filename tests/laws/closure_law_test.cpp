@@ -7,8 +7,7 @@ namespace earthshine {
 namespace {
 
 TEST(Closure, NoRayLeaksFromAClosedRoomFarFromTheOrigin) {
-  // Two million rays from all over the walls; the room stands 10 km away to strain single
-  // precision.
+  // Two million rays from all walls; the room is 10 km from the origin, to stress single precision.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.room({m, m, m, m, m, m});

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Face clusters make a solution coarse, not a picture wrong: by a solution on clusters, by one on
-// the triangles and by paths alone a picture has one mean, within four standard errors of pictures
-// that differ by their seed. The room's only lamp hangs a hand above a fine sphere and shines down,
-// so that most light comes from a small bright part of it, which rays are aimed at.
+// Face clusters make a solution coarse but leave pictures correct. Pictures by a solution on
+// clusters, by a solution on triangles and by paths have one mean, within four standard errors of
+// pictures with different seeds. The room's only lamp is just above a fine sphere and shines down,
+// so that most light comes from a small bright part of the sphere, which aimed rays sample.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies that stand on, lean against and stick in one another: patches that lie partly under a body
-// count with what is open of them.
+// Bodies that stand on, lean against or penetrate each other: patches partly under a body count
+// with their open part.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ SolveOptions coarse(double edge_m, int rays = 256) {
   return options;
 }
 
-// The closed room of 1 m, M = 1 - rho on all, with boxes in it.
+// The closed room of 1 m with boxes; M = 1 - rho everywhere.
 tests::SceneBuilder furnace(const std::vector<std::array<Vec3, 2>>& boxes) {
   tests::SceneBuilder builder;
   const std::uint32_t wall = builder.material(grey(0.9, 0.1)),
@@ -32,15 +32,14 @@ tests::SceneBuilder furnace(const std::vector<std::array<Vec3, 2>>& boxes) {
   return builder;
 }
 
-// B = 1 solves B = (1 - rho) + rho B for whatever is open: no ray of an open point ends but on an
-// open point. Its form factors closing by construction, that holds to the solver's tolerance, far
-// below the noise of any row, however coarse the patches are. Before covered points were left out
-// the ceiling was 3 % dark.
+// B = 1 solves B = (1 - rho) + rho B for the open parts, because rays from open points end on open
+// points. The form factors close by construction, so that this holds to the solver's tolerance, far
+// below the noise of a row, for patches of any size.
 void expect_uniform(const tests::SceneBuilder& builder) {
   for (const double edge_m : {1.0, 0.5, 0.19}) {
     const Solution s = tests::Prepared(builder.scene).solve(coarse(edge_m));
     for (const radiosity::ObjectLight& object : s.report.objects) {
-      // What is nowhere open, as a face pressed on another, has no light to give back: B = M.
+      // Without an open part, such as a face pressed on another, no light is reflected: B = M.
       if (object.illuminance_lx.g == 0.0) continue;
       EXPECT_NEAR(object.radiosity_lm_m2.g, 1.0, 1e-7) << object.name << " in cells of " << edge_m;
     }
@@ -66,7 +65,7 @@ TEST(Contact, AFurnaceWithStackedAndCrossingBoxesIsUniform) {
 }
 
 TEST(Contact, AnOpenFloorUnderSunAndLampConservesEnergy) {
-  // No room around it: what is sunk sees the sky below.
+  // Without a room, sunk parts see the sky below.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(grey(0.7)), shiny = builder.material(grey(0.3));
   builder.scene.materials[shiny].mirror = Rgb(0.5);
@@ -102,9 +101,9 @@ constexpr const char* plate =
     "two_sided = true\n[[object]]\nname = \"plate\"\nshape = \"quad\"\n"
     "corners = [[-2, -2, 0], [2, -2, 0], [2, 2, 0], [-2, 2, 0]]\nmaterial = \"wall\"\n";
 
-// Papers that lie flat on a plate and on each other, along the edges of its patches, take from it
-// what falls on them. Of the Sun above, whose light falls within 0.27 degrees of straight down,
-// 16 m2 get E to 1 - cos 0.27 deg = 1.1e-5; counted twice it was 24.
+// Papers that lie flat on a plate and on each other, along the edges of its patches, receive the
+// light instead of the plate. The Sun above is within 0.27 degrees of vertical, so that 16 m2
+// receive E to a relative 1 - cos 0.27 deg = 1.1e-5. If overlaps counted twice, it would be 24 m2.
 TEST(Contact, PapersOnAPlateTakeNoMoreLightThanThePlate) {
   const std::string flat =
       quad("paper", "[[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]", "wall") +
@@ -116,8 +115,9 @@ TEST(Contact, PapersOnAPlateTakeNoMoreLightThanThePlate) {
   EXPECT_LE(s.report.groups[0].imbalance, 1e-11);
 }
 
-// Two sides of a panel and a sheet in the plane of both, lamps above and below at 1 m: each lights
-// 4 m2 from within, Omega / 4 pi of it, Omega = 4 atan(1 / sqrt(3)) = 2 pi / 3 for a square of 2 m.
+// Two sides of a panel and a sheet in the plane of both, with lamps above and below at 1 m. Each
+// lamp lights 4 m2 with Omega / 4 pi of its flux, Omega = 4 atan(1 / sqrt(3)) = 2 pi / 3 for a
+// square of 2 m.
 TEST(Contact, APanelOfThreeFacesTakesTheLightOfBothSides) {
   std::string three =
       "[[material]]\nname = \"wall\"\ndiffuse = 0.5\n[[material]]\nname = \"card\"\n"
@@ -131,11 +131,12 @@ TEST(Contact, APanelOfThreeFacesTakesTheLightOfBothSides) {
   }
   const Solution s = solved(three, 0.1);
   ASSERT_EQ(s.report.groups.size(), 2U);
-  // 400 patches a side, 16 points or more each: direct light is right to some thousandths.
+  // 400 patches per side with at least 16 points each: direct light is accurate to some
+  // thousandths.
   for (const auto& line : s.report.groups) EXPECT_NEAR(line.landed_lm.g, 1.0, 0.01) << line.name;
 }
 
-// A box stands on an open plate; a lamp under both shines at the plate's black back alone.
+// A box stands on an open plate; a lamp below both lights only the plate's black back.
 TEST(Contact, NoLightComesToTheBottomOfABoxOnAPlate) {
   const std::string body =
       "[[object]]\nname = \"box\"\nshape = \"box\"\nmin = [-1, -1, 0]\nmax = [1, 1, 1]\n"

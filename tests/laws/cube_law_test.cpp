@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The closed cube of 6 x 16 x 16 patches, whose form factors are known in closed form: how far from
-// them rays are, how fast they come nearer, and what is left of it in the radiosity.
+// The closed cube of 6 x 16 x 16 patches, with form factors in closed form: errors of rays, their
+// convergence, and the resulting errors of the radiosity.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ TEST(CubeLaw, TheClosedFormsCloseEveryRow) {
 }
 
 TEST(CubeLaw, RowErrorFallsFasterThanTheSquareRootOfTheRays) {
-  // Random rays: N^-0.5. Owen-Sobol in four dimensions measured 1.46 N^-0.596 elsewhere.
+  // Random rays: N^-0.5. Owen-Sobol points in four dimensions: 1.46 N^-0.596, measured elsewhere.
   const double at_1024 = tests::mean_row_error(cube(), tests::cast_cube(cube(), 1024));
   const double at_4096 = tests::mean_row_error(cube(), tests::cast_cube(cube(), 4096));
   const double at_16384 = tests::mean_row_error(cube(), tests::cast_cube(cube(), 16384));
@@ -48,8 +48,8 @@ TEST(CubeLaw, BalancedRowsKeepTheIndirectLightRight) {
 }
 
 TEST(CubeLaw, ASmallLampIsCarriedExplicitlyAndExactly) {
-  // 2 x 2 patches of the ceiling shine. The patches' own light is known, so the error of what they
-  // cause elsewhere is compared: B - M.
+  // 2 x 2 patches of the ceiling emit. Their own light is known exactly, so that the error of the
+  // light caused elsewhere is compared: B - M.
   const double error = tests::lamp_error(1024);
   RecordProperty("error", testing::PrintToString(error));
   EXPECT_LE(error, 2e-3);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes that strain the numbers. Most stand in a closed furnace, M = 1 - rho everywhere: B = 1
-// then solves B = M + rho F B for any shapes and reflectances whose form factors close.
+// Numerically difficult scenes. Most are in a closed furnace with M = 1 - rho everywhere: B = 1
+// then solves B = M + rho F B for any shapes and reflectances if the form factors close.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ std::uint32_t furnace(tests::SceneBuilder& builder, double rho, bool sheet = fal
   return builder.material(m);
 }
 
-// Every patch and every object's mean. The patches' values are stored in single precision.
+// Checks every patch and every object's mean. Values of patches are stored in single precision.
 void expect_one_everywhere(const Solution& solution, double tolerance = 1e-8) {
   for (const float b : solution.radiosity) ASSERT_NEAR(b, 1.0, tolerance + 1e-7);
   for (const radiosity::ObjectLight& object : solution.report.objects) {
@@ -57,7 +57,7 @@ TEST(HardCase, NoReflectionAnywhere) {
   const Solution s = solved(builder, options(0.25, 1024));
   EXPECT_NEAR(s.report.objects[5].radiosity_lm_m2.g, 5.0, 1e-12);
   EXPECT_EQ(s.report.objects[4].radiosity_lm_m2.g, 0.0);
-  // 16 patches of 1024 rays, binomial at most: 4 * 5 * sqrt(0.2 * 0.8 / 16384).
+  // 16 patches of 1024 rays, at most binomial errors: 4 * 5 * sqrt(0.2 * 0.8 / 16384).
   EXPECT_NEAR(s.report.objects[4].illuminance_lx.g, 5.0 * 0.19982489569838, 0.0625);
 }
 
@@ -69,8 +69,8 @@ TEST(HardCase, BlackAndNearlyWhiteSideBySide) {
 }
 
 TEST(HardCase, PatchAreasOverTenDecades) {
-  // Plates from 2.5 um to 25 cm on a side in a room of 1 m. They reflect everything and emit
-  // nothing, which a furnace allows: a few small emitters would be sampled, not carried by F.
+  // Plates from 2.5 um to 25 cm on a side in a room of 1 m. They reflect all light and emit none,
+  // which a furnace allows; a few small emitters would be sampled instead of carried by F.
   tests::SceneBuilder builder;
   const std::uint32_t wall = furnace(builder, 0.8), plate = furnace(builder, 1.0, true);
   builder.room({wall, wall, wall, wall, wall, wall});
@@ -88,8 +88,8 @@ TEST(HardCase, PatchAreasOverTenDecades) {
 }
 
 TEST(HardCase, PlatesATenThousandthOfTheirSizeApart) {
-  // Facing unit squares h = 1e-4 apart, Howell C-11: F = 0.9998 to first order (each of four edges
-  // lets out h / 2). With M = 1 and rho = 0.9 on both, B = 1 / (1 - 0.9 F).
+  // Facing unit squares at distance h = 1e-4, Howell C-11: F = 0.9998 to first order (each of four
+  // edges loses h / 2). With M = 1 and rho = 0.9 on both, B = 1 / (1 - 0.9 F).
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(grey(0.9, 1.0));
   builder.plate(m, 1.0, 0.0, true);
@@ -100,7 +100,7 @@ TEST(HardCase, PlatesATenThousandthOfTheirSizeApart) {
                    (0.5 * std::log(root * root * root * root / (1.0 + 2.0 * x * x)) +
                     2.0 * x * root * std::atan(x / root) - 2.0 * x * std::atan(x));
   EXPECT_NEAR(f, 0.9998, 1e-5);
-  // dB / dF = 0.9 B^2 = 90; 32 patches of 4096 rays: binomial error of F 3.9e-5 at most.
+  // dB / dF = 0.9 B^2 = 90; 32 patches of 4096 rays: binomial error of F at most 3.9e-5.
   EXPECT_NEAR(s.report.objects[0].radiosity_lm_m2.g, 1.0 / (1.0 - 0.9 * f), 4.0 * 90.0 * 3.9e-5);
 }
 
@@ -114,8 +114,8 @@ TEST(HardCase, SheetsInOnePlaneThatOverlap) {
 }
 
 TEST(HardCase, ABodyInsideABody) {
-  // The outer body's faces turn outward: the inner body sees their black backs and nothing else, so
-  // its B is its M. The room around them is still a furnace.
+  // The outer body's faces point outward: the inner body sees only their black backs, so that its B
+  // is its M. The room around them is still a furnace.
   tests::SceneBuilder builder;
   const std::uint32_t wall = furnace(builder, 0.7);
   builder.room({wall, wall, wall, wall, wall, wall});
@@ -136,7 +136,7 @@ TEST(HardCase, ABodyInsideABody) {
   for (std::size_t o = 0; o < 18; ++o) {
     EXPECT_NEAR(s.report.objects[o].radiosity_lm_m2.g, o < 12 ? 1.0 : 3.0, 1e-8) << o;
   }
-  // The inner body's 6 patches of all patches send every ray to a back.
+  // All rays from the 6 patches of the inner body hit a back.
   const double inner = 6.0 / double(s.patches.count());
   EXPECT_NEAR(s.report.back_share, inner, 1e-12);
 }
@@ -147,7 +147,7 @@ TEST(HardCase, NeedleTriangles) {
   builder.room({wall, wall, wall, wall, wall, wall});
   for (int k = 0; k < 5; ++k) {
     const double z = 0.3 + 0.1 * k, width = std::pow(10.0, -3 - k);
-    // Four corners of which two nearly coincide: two needles.
+    // Four corners, two of which nearly coincide: two needles.
     builder.quad(sheet, {0.1, 0.5, z}, {0.9, 0.5, z}, {0.9, 0.5 + width, z + width},
                  {0.5, 0.5 + 0.9 * width, z + width});
   }
@@ -155,7 +155,7 @@ TEST(HardCase, NeedleTriangles) {
 }
 
 TEST(HardCase, FarFromTheOriginAndVerySmall) {
-  // A furnace a thousand kilometres out, and one of a millimetre.
+  // A furnace at a thousand kilometres, and one of a millimetre.
   tests::SceneBuilder builder;
   const std::uint32_t dark = furnace(builder, 0.2), bright = furnace(builder, 0.999);
   builder.room({dark, bright, bright, bright, dark, bright});
@@ -175,8 +175,8 @@ scenes::Lamp lamp_at(const Vec3& where, double cd) {
 }
 
 TEST(HardCase, ABillionBetweenTheSunAndANightLamp) {
-  // Light groups do not touch each other: the lamp's light in one solve with the Sun, 1e9 times
-  // brighter, is what it is alone.
+  // Light groups are independent: the lamp's light, solved together with a Sun 1e9 times brighter,
+  // is equal to its light alone.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(grey(0.8));
   builder.room({m, m, m, m, m, m});
@@ -200,9 +200,9 @@ TEST(HardCase, ABillionBetweenTheSunAndANightLamp) {
 }
 
 TEST(HardCase, ARoomWithAPinhole) {
-  // A hole of 1 cm in a room with rho = 0.9999: all light ends in the walls or the hole. With B
-  // nearly uniform, M A = B A (1 - rho) + B A_hole (1 - B's dip there), within a per cent of
-  // uniformity: B = M / (1 - rho + A_hole / A).
+  // A hole of 1 cm in a room with rho = 0.9999: all light ends in the walls or in the hole. B is
+  // uniform within a per cent, except near the hole, so that M A = B A (1 - rho) + B A_hole gives
+  // B = M / (1 - rho + A_hole / A).
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(grey(0.9999, 1.0));
   builder.room({m, m, m, m, m, m});
@@ -226,9 +226,8 @@ TEST(HardCase, EveryFaceTwice) {
 }
 
 TEST(HardCase, AFaceTheWrongWayRoundIsReportedWithTheShareOfRaysThatMetItsBack) {
-  // The ceiling turned over: from the floor and the walls, F = 1/5 each of the rays that leave the
-  // five meet its back; the ceiling's own see the sky. Five of six faces send 0.2 of their rays
-  // there.
+  // The ceiling is reversed. From the floor and the walls a share F = 1/5 of the rays hits its
+  // back; rays from the ceiling see the sky. Five of six faces send 0.2 of their rays to a back.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(grey(0.5, 1.0));
   builder.room({m, m, m, m, m, m});
@@ -236,14 +235,14 @@ TEST(HardCase, AFaceTheWrongWayRoundIsReportedWithTheShareOfRaysThatMetItsBack) 
   const Solution s = solved(builder, options(0.25, 1024));
   EXPECT_NEAR(s.report.back_share, 5.0 * 0.2 / 6.0, 4.0 * std::sqrt(0.16 / (96.0 * 1024.0)));
   ASSERT_EQ(s.report.objects.size(), 6U);
-  // Whoever meets the ceiling meets its back.
+  // All rays to the ceiling hit its back.
   EXPECT_EQ(s.report.objects[5].back_share, 1.0);
   EXPECT_EQ(s.report.objects[4].back_share, 0.0);
   EXPECT_LE(s.report.groups[0].imbalance, 1e-12);
 }
 
 TEST(HardCase, OnlySkyToSee) {
-  // One patch under the Sun overhead: B = rho E, all of it escapes.
+  // One patch under a vertical Sun: B = rho E, and all of it escapes.
   tests::SceneBuilder builder;
   builder.plate(builder.material(grey(0.5)), 1.0, 0.0, true);
   scenes::Sun sun;
@@ -252,7 +251,7 @@ TEST(HardCase, OnlySkyToSee) {
   builder.scene.sun = sun;
   const Solution s = solved(builder, options(4.0));
   ASSERT_EQ(s.patches.count(), 1U);
-  EXPECT_NEAR(s.radiosity[0], 500.0, 500.0 * 1e-4);  // cos of the Sun's radius
+  EXPECT_NEAR(s.radiosity[0], 500.0, 500.0 * 1e-4);  // cosine of the Sun's radius
   EXPECT_NEAR(s.report.groups[0].escaped_lm.g, s.report.objects[0].radiosity_lm_m2.g, 1e-9);
 }
 
@@ -279,15 +278,15 @@ TEST(HardCase, ClosedRoomThatReflectsEverythingIsRefusedByName) {
     EXPECT_EQ(error.blame(), base::Blame::Input);
     EXPECT_NE(std::string(error.what()).find("perfect-white"), std::string::npos) << error.what();
   }
-  // Diffuse and mirror together 1: nothing is absorbed either, nor lost where rays are followed no
-  // further (0.95^64 of them).
+  // Diffuse and mirror reflectance add up to 1: no light is absorbed or lost, also where rays end
+  // after 64 steps (0.95^64 of them).
   tests::SceneBuilder mirrors = builder;
   for (const double mirror : {0.5, 0.95}) {
     mirrors.scene.materials[0].diffuse = Rgb(1.0 - mirror);
     mirrors.scene.materials[0].mirror = Rgb(mirror);
     EXPECT_THROW((void)solved(mirrors, options(0.25, 16)), base::Error) << mirror;
   }
-  // With a way out the same material is fine.
+  // With an opening the same material is valid.
   builder.scene.triangles.resize(10);
   builder.scene.objects.pop_back();
   EXPECT_LE(solved(builder).report.groups[0].imbalance, 1e-12);

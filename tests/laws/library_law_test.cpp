@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laws on the scenes that ship, read from their files as a user's scenes are.
+// Laws for the shipped scenes, read from their files like a user's scenes.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -28,8 +28,9 @@ using SceneAndRays = std::tuple<const char*, int>;
 class EveryScene : public testing::TestWithParam<SceneAndRays> {};
 
 TEST_P(EveryScene, BalancesToRoundingAtAnyNumberOfRays) {
-  // By few rays no scaling of the hits fits rows and columns: the bay's were 3e-3 of the surface
-  // off at 16 rays, 4e-4 at 64, the still life's 8e-4 at 16.
+  // With few rays the hits alone have no scaling that balances rows and columns: the remaining
+  // defect was 3e-3 of the surface for the bay at 16 rays, 4e-4 at 64, and 8e-4 for the still life
+  // at 16.
   const auto [name, rays] = GetParam();
   const bool bay = std::string_view(name).starts_with("sts46");
   const radiosity::SolveReport report = solve_library_scene(name, bay ? 1.0 : 0.1, rays).report;
@@ -55,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(
 class Sts46 : public testing::TestWithParam<const char*> {};
 
 TEST_P(Sts46, EnergyInEqualsAbsorbedPlusEscapedInEveryGroup) {
-  // Every surface of the bay at once: sheets, glass, gloss, lamps in the floor. 1e-9 of the total.
+  // All kinds of surfaces in the bay: sheets, glass, gloss, lamps in the floor. 1e-9 of the total.
   const radiosity::Solution solution = solve_library_scene(GetParam(), 1.0, 128);
   ASSERT_FALSE(solution.report.groups.empty());
   for (const radiosity::GroupLedger& line : solution.report.groups) {
@@ -76,8 +77,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Sts46,
                                          "sts46/night-lamps.toml", "sts46/night-lamp-failed.toml"));
 
 TEST(Sts46Lamps, FailedLampTakesItsShareAndNothingElse) {
-  // Night with all lamps minus night with one failed is the light of that lamp alone: less flux
-  // lands, and the group that did not fail is the same to rounding.
+  // Night with all lamps minus night with one failed lamp is the light of this lamp: less flux
+  // lands, and more than half remains.
   const radiosity::Solution all = solve_library_scene("sts46/night-lamps.toml", 1.0, 128);
   const radiosity::Solution failed = solve_library_scene("sts46/night-lamp-failed.toml", 1.0, 128);
   const auto landed = [](const radiosity::Solution& s) {

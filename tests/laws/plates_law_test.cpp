@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Illuminance of small plates from every source, shadows included, as the solve and as the picture
-// have it, against closed forms. Means over seeds within four standard errors.
+// Illuminance of small plates by every source, with shadows, in solutions and pictures, against
+// closed forms. Means over seeds within four standard errors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,7 +32,7 @@ Estimate over_seeds(int seeds, const std::function<double(std::uint64_t)>& value
   return estimate;
 }
 
-// A plate of 0.1 mm at the origin, facing up, white so that its radiance is E / pi.
+// A white plate of 0.1 mm at the origin, facing up: its radiance is E / pi.
 struct PlateScene : tests::SceneBuilder {
   std::uint32_t black;
   PlateScene() {
@@ -44,7 +44,7 @@ struct PlateScene : tests::SceneBuilder {
   }
 };
 
-// As the solve has it: the mean over the plate.
+// By the solution: the mean over the plate.
 Estimate solved(const scenes::Scene& scene, int seeds = 16) {
   const tests::Prepared prepared(scene);
   radiosity::SolveOptions options;
@@ -56,7 +56,7 @@ Estimate solved(const scenes::Scene& scene, int seeds = 16) {
   });
 }
 
-// As the picture has it: four pixels on the plate, from a camera 1 cm above.
+// By a picture: four pixels on the plate, from a camera 1 cm above.
 Estimate pictured(const scenes::Scene& scene, int seeds = 16) {
   const tests::Prepared prepared(scene);
   scenes::Camera camera;
@@ -78,7 +78,7 @@ Estimate pictured(const scenes::Scene& scene, int seeds = 16) {
 
 void expect_both(const scenes::Scene& scene, double exact, double most_relative_error) {
   for (const Estimate& e : {solved(scene), pictured(scene)}) {
-    // The floor is rounding: some of these are exact, without any noise.
+    // The minimum covers rounding: some cases are exact, without noise.
     EXPECT_NEAR(e.mean, exact, 4.0 * e.std_error + 1e-5 * exact);
     EXPECT_LT(e.std_error, most_relative_error * exact + 1e-12);
   }
@@ -92,12 +92,12 @@ scenes::Earth uniform_earth(double half_angle_deg) {
   return earth;
 }
 
-// Area of a disc beyond a chord at x radii from its centre, over the disc's.
+// Area of a disc beyond a chord at x radii from its centre, relative to the disc.
 double beyond_chord(double x) { return 0.5 - (x * std::sqrt(1.0 - x * x) + std::asin(x)) / pi; }
 
 TEST(Plates, SunsPenumbraBehindAStraightEdgeIsADiscCutByAChord) {
-  // A screen over x < edge at 2 m: the edge stands x radii of the Sun from its centre, where
-  // x = edge / (2 m tan r). The disc is small: chord and circle lie in a plane to 1e-5.
+  // A screen over x < edge at 2 m: the edge is x radii of the Sun from its centre, where
+  // x = edge / (2 m tan r). The disc is small: chord and circle are plane to 1e-5.
   const double radius = base::radians(0.2666), reach = 2.0 * std::tan(radius);
   for (const double x : {-0.9, -0.5, 0.0, 0.3, 0.8}) {
     PlateScene plate;
@@ -105,7 +105,7 @@ TEST(Plates, SunsPenumbraBehindAStraightEdgeIsADiscCutByAChord) {
     plate.quad(plate.black, {-5, -5, 2}, {edge, -5, 2}, {edge, 5, 2}, {-5, 5, 2});
     plate.scene.sun = scenes::Sun{};
     plate.scene.sun->direction = Vec3(0, 0, 1);
-    // The plate's own 0.1 mm are 0.5 % of the penumbra: their mean shifts nothing to first order.
+    // The plate's 0.1 mm are 0.5 % of the penumbra; the mean over it has no first-order error.
     const double exact = 133100.0 * beyond_chord(x);
     for (const Estimate& e : {solved(plate.scene, 64), pictured(plate.scene, 64)}) {
       EXPECT_NEAR(e.mean, exact, 4.0 * e.std_error + 2e-5 * 133100.0) << x;
@@ -114,15 +114,16 @@ TEST(Plates, SunsPenumbraBehindAStraightEdgeIsADiscCutByAChord) {
   }
 }
 
-// The Earth's limb, a circle of half angle h about its centre, bends away from the chord across the
-// Sun's disc as a parabola, y^2 r cot(h) / 2 in radii r of the disc: over a chord of half length c
-// that leaves c^3 times as much of the disc as this more. What follows is smaller by r, 5e-3.
+// The Earth's limb, a circle of half angle h about its centre, deviates from the chord across the
+// Sun's disc as a parabola, y^2 r cot(h) / 2 in radii r of the disc. Over a chord of half length c
+// this leaves c^3 times the following share more of the disc. Higher terms are smaller by r, 5e-3.
 double limb_bend(double half_angle_deg) {
   return base::radians(0.2666) / std::tan(base::radians(half_angle_deg)) / (3.0 * pi);
 }
 
 TEST(Plates, SunAtTheLimbShinesWithWhatIsLeftOfItsDisc) {
-  // x radii above the limb. The Earth is black, so that the Sun alone shines; the plate faces it.
+  // The Sun is x radii above the limb. The Earth is black, so that only the Sun shines; the plate
+  // faces it.
   for (const double x : {-0.6, 0.0, 0.6}) {
     PlateScene plate;
     plate.scene.sun = scenes::Sun{};
@@ -138,8 +139,8 @@ TEST(Plates, SunAtTheLimbShinesWithWhatIsLeftOfItsDisc) {
 }
 
 TEST(Plates, SunAtTheLimbCastsThePenumbraOfWhatIsLeftOfIt) {
-  // Half of the disc is over the limb (x > 0 of the plate); a screen at 2 m hides what is further
-  // than c radii from the limb: left are the slices from 0 to c.
+  // Half of the disc is above the limb (x > 0 at the plate). A screen at 2 m hides all points
+  // further than c radii from the limb, so that the slices from 0 to c remain.
   const double reach = 2.0 * std::tan(base::radians(0.2666));
   for (const double c : {-0.3, 0.2, 0.5, 0.8}) {
     PlateScene plate;
@@ -160,8 +161,8 @@ TEST(Plates, SunAtTheLimbCastsThePenumbraOfWhatIsLeftOfIt) {
 
 TEST(Plates, LambertEarthGivesTiltedPlatesTheTable) {
   // A of E = albedo E_sun A at 425 km, by independent integration to four digits: a plate that
-  // faces the nadir, and vertical ones on the Sun's side and away from it. The plate stays, the
-  // Earth turns.
+  // faces the nadir, and vertical plates on the Sun's side and on the opposite side. The plate is
+  // fixed and the Earth is turned.
   struct Row {
     double theta_deg, tilt_deg, expected;
   };
@@ -170,7 +171,7 @@ TEST(Plates, LambertEarthGivesTiltedPlatesTheTable) {
   for (const Row& row : rows) {
     PlateScene plate;
     const double tilt = base::radians(row.tilt_deg), theta = base::radians(row.theta_deg);
-    // In the plane x, z: the nadir stands `tilt` from the plate's normal, away from the Sun.
+    // In the plane x, z: the nadir is at the angle `tilt` to the plate's normal, away from the Sun.
     const Vec3 nadir(-std::sin(tilt), 0.0, std::cos(tilt)),
         along(std::cos(tilt), 0.0, std::sin(tilt));
     scenes::Earth earth;
@@ -180,15 +181,15 @@ TEST(Plates, LambertEarthGivesTiltedPlatesTheTable) {
     plate.scene.earth = earth;
     plate.scene.sun = scenes::Sun{};
     plate.scene.sun->direction = -std::cos(theta) * nadir + std::sin(theta) * along;
-    // The plate is one-sided, and where the Sun itself shines on it a screen far off stands
-    // between.
+    // The plate is one-sided. A distant screen shields it from direct sunlight.
     const Vec3 sun = plate.scene.sun->direction;
     const base::Frame3 frame = base::frame_around(sun);
     const Vec3 middle = 1000.0 * sun, a = 10.0 * frame.tangent, b = 10.0 * frame.bitangent;
     plate.quad(plate.black, middle - a - b, middle + a - b, middle + a + b, middle - a + b);
-    // Stratified rays meet the limb's jump in one stratum of a set. A share p of it lies inside; if
-    // p is near 1 so few seeds show the jump that their spread cannot tell: its standard error is
-    // at most sqrt(p (1 - p)) / 256 / 8 for 64 sets of 256 rays, 8e-5 at p = 0.97, as here.
+    // The jump at the limb lies in one stratum of the stratified rays; a share p of the stratum is
+    // inside. If p is near 1, so few seeds show the jump that their scatter underestimates it. Its
+    // standard error is at most sqrt(p (1 - p)) / 256 / 8 for 64 sets of 256 rays, 8e-5 at p = 0.97
+    // as here.
     const double exact = 133100.0 * row.expected, limb = 133100.0 * 8e-5, digits = 133100.0 * 5e-5;
     for (const Estimate& e : {solved(plate.scene), pictured(plate.scene)}) {
       EXPECT_NEAR(e.mean, exact, 4.0 * std::hypot(e.std_error, limb) + digits)
@@ -199,7 +200,8 @@ TEST(Plates, LambertEarthGivesTiltedPlatesTheTable) {
 }
 
 TEST(Plates, WallThatHidesHalfTheEarthLeavesHalfTheLight) {
-  // A wall through the plate's axis, 1 mm beside it and very large: half of a disc about the axis.
+  // A wall through the plate's axis, 1 mm beside it and very large, hides half of a disc about the
+  // axis.
   PlateScene plate;
   plate.quad(plate.black, {-1e-3, -1e3, 0}, {-1e-3, 1e3, 0}, {-1e-3, 1e3, 1e3}, {-1e-3, -1e3, 1e3});
   for (const double half_angle : {8.0, 69.6}) {  // narrow: shadow rays; wide: rays that escape
@@ -210,7 +212,7 @@ TEST(Plates, WallThatHidesHalfTheEarthLeavesHalfTheLight) {
 }
 
 TEST(Plates, BaysWallsLeaveTheEarthAnInfiniteStrip) {
-  // A trough of walls at x = -1 m and x = 2 m, both 3 m high and very long, under an Earth that
+  // A trough with walls at x = -1 m and x = 2 m, both 3 m high and very long, under an Earth that
   // fills the sky: E = pi L (sin b - sin a) / 2 between the angles a and b from the normal.
   PlateScene plate;
   plate.quad(plate.black, {-1, -3e3, 0}, {-1, 3e3, 0}, {-1, 3e3, 3}, {-1, -3e3, 3});
@@ -223,8 +225,8 @@ TEST(Plates, BaysWallsLeaveTheEarthAnInfiniteStrip) {
 }
 
 TEST(Plates, EveryKindOfLampGivesTheClosedForm) {
-  // 60 deg off the plate's normal at 2 m, aimed at it: E = I cos 60 / 4; an area lamp is small
-  // enough for its intensity M A / pi (1 cm: 1e-5).
+  // Lamps at 2 m, 60 deg off the plate's normal, aimed at it: E = I cos 60 / 4. The area lamp is
+  // small enough for its intensity M A / pi (1 cm: 1e-5).
   for (const auto kind : {scenes::LampKind::Point, scenes::LampKind::Spot,
                           scenes::LampKind::Rectangle, scenes::LampKind::Disk}) {
     PlateScene plate;
@@ -242,8 +244,8 @@ TEST(Plates, EveryKindOfLampGivesTheClosedForm) {
     const bool wide = kind == scenes::LampKind::Rectangle || kind == scenes::LampKind::Disk;
     (wide ? lamp.exitance : lamp.intensity_cd) = Rgb(wide ? 500.0 * pi / 1e-4 : 500.0);
     plate.scene.lamps.push_back(lamp);
-    // The solve's own figure also counts what the lamp's rays found to escape: as sampled it is
-    // exact to the plate's size.
+    // The picture samples the lamp and is exact up to the plate's size. The solution also uses the
+    // lamp's rays that escaped.
     const Estimate e = pictured(plate.scene, 4);
     EXPECT_NEAR(e.mean, 500.0 * 0.5 / 4.0, 4.0 * e.std_error + 5e-5 * 62.5);
     const Estimate s = solved(plate.scene, 4);

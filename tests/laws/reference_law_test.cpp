@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The path tracer against pictures by other people's programs (tests/data/README.md: Tungsten and
-// Cycles, unlimited bounces).
+// The path tracer against pictures of other programs (tests/data/README.md: Tungsten and Cycles,
+// unlimited bounces).
 #include <gtest/gtest.h>
 
 #include <array>
@@ -18,7 +18,7 @@ namespace {
 constexpr int reference_edge = 256, edge = 64;
 constexpr int block = reference_edge / edge;
 
-// Luminance of a colour PFM of 256 x 256 (little-endian, bottom row first), meaned over blocks.
+// Luminance of a colour PFM of 256 x 256 (little-endian, bottom row first), averaged over blocks.
 std::vector<double> read_reference(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string kind, width, height, scale;
@@ -45,7 +45,7 @@ struct Case {
   const char* scene;
   int paths;
   double noise;     // of the reference, relative RMS per pixel
-  double programs;  // how far the programs' means are apart, relative
+  double programs;  // relative difference of the programs' means
 };
 
 class Reference : public testing::TestWithParam<Case> {};
@@ -72,8 +72,9 @@ TEST_P(Reference, PathTracerDrawsWhatOtherPathTracersDraw) {
   EXPECT_NEAR(mean / expected, 1.0, 4.0 * std_error + GetParam().programs);
   EXPECT_LT(4.0 * std_error, 0.02);
 
-  // Where the picture is: the squared differences are the two variances, the reference's as stated.
-  // Its figure leaves lamps out, where it has none; 1.5 covers how unevenly noise is spread.
+  // Pixel by pixel: the mean squared difference is the sum of the two variances; the variance of
+  // the reference is as stated. Its figure excludes lamps, which have no noise; the factor 1.5
+  // allows for uneven noise.
   double squares = 0.0;
   for (std::size_t p = 0; p < reference.size(); ++p) {
     squares += std::pow(traced.mean[p] - reference[p], 2) / n;

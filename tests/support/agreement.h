@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether two renderers draw the same picture: a z-test per pixel and one of the whole.
+// Tests whether two renderers give the same picture: a z-test per pixel and one of the whole.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,12 +11,12 @@
 
 namespace earthshine::tests {
 
-// Luminance per pixel and the variance of what stands there.
+// Luminance per pixel and its variance.
 struct Measured {
   std::vector<double> mean, variance;
 };
 
-// A picture that knows its own variance (channel `variance`).
+// A picture with its variance (channel `variance`).
 inline Measured measured(const base::Image& image) {
   Measured m;
   for (const float y : base::luminance_of(image)) m.mean.push_back(double(y));
@@ -24,8 +24,8 @@ inline Measured measured(const base::Image& image) {
   return m;
 }
 
-// Mean of pictures that differ by their seed alone, and the variance of that mean from their
-// spread: holds for any estimator, also where samples within a picture are not independent.
+// Mean of pictures with different seeds, and the variance of this mean from their scatter. Valid
+// for any estimator, also where samples within a picture are correlated.
 inline Measured measured(const std::vector<base::Image>& replicates) {
   const auto k = static_cast<double>(replicates.size());
   Measured m{std::vector<double>(replicates[0].pixel_count()),
@@ -42,18 +42,18 @@ inline Measured measured(const std::vector<base::Image>& replicates) {
 }
 
 struct Agreement {
-  std::size_t pixels = 0;  // that vary
-  std::size_t broken = 0;  // that do not vary, and differ
+  std::size_t pixels = 0;  // with variance
+  std::size_t broken = 0;  // without variance, but different
   double mean_z = 0.0, mean_z2 = 0.0;
   double sd_z = 0.0, sd_z2 = 0.0;  // over the pixels
   double expected_z2 = 0.0;
   double ratio = 0.0, ratio_std_error = 0.0;  // of the pictures' means, first over second
 };
 
-// z = (first - second) / sqrt(variance of first + variance of second), the second's variance from
-// `spread`, a picture of the same kind by another seed: light paths are skewed, so that a pixel's
-// own mean and variance go together, which would shift the mean of z. Student's t then says what to
-// expect: mean z^2 = nu / (nu - 2), nu by Welch and Satterthwaite,
+// z = (first - second) / sqrt(variance of first + variance of second). The second variance is from
+// `spread`, an independent picture: light paths are skewed, so that a pixel's mean and variance are
+// correlated, which would shift the mean of z. For Student's t the mean of z^2 is nu / (nu - 2),
+// with nu by Welch and Satterthwaite:
 //   (v1 + v2)^2 / nu = v1^2 / (replicates - 1) + v2^2 / (samples - 1).
 inline Agreement compare(const Measured& first, std::size_t replicates, const Measured& second,
                          const Measured& spread, std::size_t samples) {
@@ -66,7 +66,7 @@ inline Agreement compare(const Measured& first, std::size_t replicates, const Me
     sum_second += second.mean[p];
     sum_variance += v1 + v2;
     const double difference = first.mean[p] - second.mean[p];
-    // Below single precision a pixel does not vary: black sky, the inside of a lamp.
+    // Constant within single precision: black sky, the inside of a lamp.
     if (v1 + v2 <= std::pow(1e-6 * second.mean[p], 2)) {
       a.broken += std::abs(difference) > 1e-5 * second.mean[p] ? 1 : 0;
       continue;

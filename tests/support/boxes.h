@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A cube seen from inside with boxes in it, cut into patches at will.
+// A cube seen from inside with boxes in it, divided into patches of given size.
 #pragma once
 
 #include "radiosity/patches/patches.h"
@@ -26,7 +26,7 @@ inline void add_box(SceneBuilder& builder, std::uint32_t material, const Vec3& l
   builder.quad(material, p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1));
 }
 
-// Patches of a scene whose facets are all cut into count(facet) x count(facet) cells.
+// Patches of a scene with count(facet) x count(facet) cells per facet.
 template <class Count>
 radiosity::Patches cut_facets(const scenes::Scene& scene, Count count) {
   radiosity::Patches patches = radiosity::subdivide(scene, 1e9);
@@ -60,7 +60,8 @@ inline CutScene cube_and_box(std::uint32_t n) {
           cut_facets(builder.scene, [n](std::uint32_t f) { return f < 6 ? n : n / 4; })};
 }
 
-// The same cube and k x k x k boxes in a lattice, half as wide as their spacing, a patch per face.
+// The same cube with k x k x k boxes in a lattice, each half as wide as the spacing, one patch per
+// face.
 inline CutScene cube_and_boxes(std::uint32_t n, int k) {
   SceneBuilder builder;
   const std::uint32_t m = builder.material(grey(0.5));

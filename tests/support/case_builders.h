@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which scene each family of the case library has. Internal to case_library.cpp.
+// Scene builders of the families of the case library. Internal to case_library.cpp.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 namespace earthshine::tests {
 
 struct CaseBuilder {
-  const char* prefix;  // of the names of the family; the first row that fits is taken
+  const char* prefix;  // of the names in the family; the first matching row is used
   void (*build)(const CaseRecord& record, Case& made);
 };
 
@@ -17,9 +17,9 @@ struct CaseBuilder {
 [[nodiscard]] std::span<const CaseBuilder> round_builders();
 [[nodiscard]] std::span<const CaseBuilder> radiosity_builders();
 
-// Strips stand between mirrors this far apart, in widths: images make them infinite. A ray is given
-// up after 16 reflections; what two facing strips send beyond a distance of y widths falls as
-// 1 / (3 pi y^3), 3e-8 of it after 16 of these lengths.
+// Strips between mirrors at this distance, in widths; the mirror images make them infinite. A ray
+// ends after 16 reflections. The light that facing strips exchange beyond a distance of y widths
+// falls as 1 / (3 pi y^3): 3e-8 of it after 16 of these lengths.
 inline constexpr double strip_length = 10.0;
 
 }  // namespace earthshine::tests

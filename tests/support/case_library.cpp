@@ -13,7 +13,7 @@
 namespace earthshine::tests {
 namespace {
 
-// Every polygon of a case is a patch.
+// Large enough that every polygon of a case is one patch.
 constexpr double uncut_m = 1e9;
 
 std::vector<double> numbers(const nlohmann::json& value) {
@@ -36,7 +36,7 @@ const CaseBuilder* find_builder(const std::string& name) {
   return nullptr;
 }
 
-// B = M + rho F B for a few zones, by bouncing the light until it is spent: rho < 1 by enough.
+// B = M + rho F B for a few zones, by Neumann iteration; rho is far enough below 1.
 double network_radiosity(const Case& of, const radiosity::ObjectFormFactors& factors) {
   std::vector<double> b = of.zone_exitance;
   for (int bounce = 0; bounce < 400; ++bounce) {
@@ -56,7 +56,7 @@ double solved_radiosity(const Prepared& prepared, const Case& of, std::uint64_t 
   radiosity::SolveOptions options;
   options.form_factor_rays = of.rays;
   options.seed = seed;
-  // Patches as the case has them: no small ones joined to clusters.
+  // The patches of the case, without clusters of small ones.
   const radiosity::Solution solution =
       radiosity::solve(prepared, options, radiosity::subdivide(prepared.scene, uncut_m));
   result.rays += double(solution.report.form_factor_rays);
@@ -68,7 +68,7 @@ CaseResult factor(const Case& of, const ObjectFactorMethod& method, std::uint64_
   if (of.to != every_object) {
     return {found.F[of.from][of.to], found.std_error[of.from][of.to], 0.0};
   }
-  // A row's errors cancel in its sum: what is left is what was found not to land.
+  // Errors within a row cancel in its sum; the remaining error is light that was found to escape.
   CaseResult result;
   for (const double f : found.F[of.from]) result.computed += f;
   return result;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library of closed-form cases (tests/data/view-factors.json), each with the scene that has its
-// geometry, and what to read off the result.
+// The library of closed-form cases (tests/data/view-factors.json): each has a scene with its
+// geometry, and the result to compare.
 #pragma once
 
 #include <filesystem>
@@ -30,8 +30,8 @@ struct CaseRecord {
 
 enum class CaseKind {
   Factor,     // F from one object to another, or to all (to == every_object)
-  Radiosity,  // mean B of an object of the scene, solved
-  Network     // B of an object from F between whole objects: each is one zone
+  Radiosity,  // mean B of an object, from the solved scene
+  Network     // B of an object from F between whole objects, one zone each
 };
 
 inline constexpr std::size_t every_object = ~std::size_t{0};
@@ -40,15 +40,15 @@ struct Case {
   CaseRecord record;
   CaseKind kind = CaseKind::Factor;
   CaseScene made;
-  std::size_t from = 0, to = 0;                         // objects; radiosities are read off `from`
+  std::size_t from = 0, to = 0;                         // objects; a radiosity is of `from`
   int rays = 4096;                                      // per patch
   std::vector<double> zone_reflectance, zone_exitance;  // of a network, per object
-  // How far the value of the scene as built may lie from the library's: polygons in place of round
-  // bodies, patches of constant radiosity in place of a continuum. 0: none.
+  // Largest difference between the exact values of the scene and of the library: polygons instead
+  // of round bodies, patches of constant radiosity instead of a continuum. 0: none.
   double model_error = 0.0;
 };
 
-// What a record leads to: a scene, or the reason why there is none.
+// A case, or the reason why none can be built.
 struct BuiltCase {
   std::optional<Case> built;
   std::string refusal;
@@ -60,27 +60,26 @@ struct CaseResult {
   double computed = 0.0, std_error = 0.0;
   double rays = 0.0;
 
-  // What rounding and the solver's tolerance leave.
+  // Error by rounding and the solver's tolerance.
   static constexpr double rounding = 1e-8;
   [[nodiscard]] double error(const Case& of) const { return computed - of.record.value; }
-  // Whether it is no more than four standard errors, or the stated errors of the scene or rounding.
+  // Whether the error is within four standard errors, the scene's model error or rounding.
   [[nodiscard]] bool agrees(const Case& of) const;
 };
 
-// A way to find form factors between objects.
+// A method for form factors between objects.
 using ObjectFactorMethod =
     std::function<radiosity::ObjectFormFactors(const Case&, std::uint64_t seed)>;
 [[nodiscard]] radiosity::ObjectFormFactors object_factors_by_rays(const Case& of,
                                                                   std::uint64_t seed);
 
-// Throws base::Error (Input) where there are mirrors.
+// Throws base::Error (Input) for scenes with mirrors.
 [[nodiscard]] radiosity::ObjectFormFactors object_factors_exact(const Case& of, std::uint64_t seed);
 
-// How many patches the case's scene has.
+// Number of patches of the case's scene.
 [[nodiscard]] std::size_t patch_count(const Case& of);
 
-// Factors come with their standard errors from one run; radiosities from the scatter of `seeds`
-// runs.
+// Standard errors: of form factors from one run, of radiosities from the scatter of `seeds` runs.
 inline constexpr int radiosity_seeds = 16;
 [[nodiscard]] CaseResult run_case(const Case& of, const ObjectFactorMethod& method,
                                   std::uint64_t seed);

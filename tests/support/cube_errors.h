@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far form factors and radiosities of the closed cube are from its closed forms.
+// Errors of form factors and radiosities of the closed cube against its closed forms.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,7 @@ inline radiosity::FormFactors cast_cube(const ExactCube& cube, int rays, std::ui
   return radiosity::cast_form_factors(cube.builder.scene, query, patches, {rays, seed});
 }
 
-// Mean over the rows of the root of sum_j (F_ij - exact)^2.
+// Mean over the rows of sqrt(sum_j (F_ij - exact)^2).
 inline double mean_row_error(const ExactCube& cube, const radiosity::FormFactors& f) {
   double sum = 0.0;
   std::vector<double> row(f.count());
@@ -44,7 +44,7 @@ inline double mean_row_error(const ExactCube& cube, const radiosity::FormFactors
   return sum / double(f.count());
 }
 
-// Relative L2 error of the indirect part of B, the ceiling shining with M = 1 through F.
+// Relative L2 error of the indirect part of B, for a ceiling of M = 1, solved with F.
 inline double indirect_error(const ExactCube& cube, const radiosity::FormFactors& f, double rho) {
   std::vector<double> source(cube.count(), 0.0), reflectance(cube.count(), rho);
   for (std::size_t i = cube.count() / 6 * ceiling_face; i < cube.count(); ++i) source[i] = 1.0;
@@ -58,8 +58,8 @@ inline double indirect_error(const ExactCube& cube, const radiosity::FormFactors
   return std::sqrt(difference / all);
 }
 
-// Relative L2 error of B - M where 2 x 2 patches of the ceiling of the cube of 6 x 16 x 16 shine,
-// rho = 0.5, as `solve` finds it.
+// Relative L2 error of B - M by `solve`, where 2 x 2 patches of the ceiling of the cube of 6 x 16 x
+// 16 emit and rho = 0.5.
 inline double lamp_error(int rays, std::uint64_t seed = 1) {
   constexpr int n = 16;
   const auto lamp = [](int face, int i, int j) {
@@ -85,7 +85,7 @@ inline double lamp_error(int rays, std::uint64_t seed = 1) {
   const std::vector<double> exact = cube.radiosity(source, 0.5);
   double difference = 0.0, all = 0.0;
   for (std::size_t k = 0; k < cube.count(); ++k) {
-    const double found = double(solution.radiosity[3 * k]);  // explicit emitters' M is left out
+    const double found = double(solution.radiosity[3 * k]);  // without M of explicit emitters
     difference += (found - (exact[k] - source[k])) * (found - (exact[k] - source[k]));
     all += (exact[k] - source[k]) * (exact[k] - source[k]);
   }

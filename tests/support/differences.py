@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""How far pictures of two builds differ: other compilers, other versions of Embree.
+"""Differences between pictures of two builds, such as other compilers or other versions of Embree.
 
 usage: differences.py [--scene NAME] PROGRAM OTHER
 
-Draws every shipped scene small with both programs in three ways and as the CCTV camera shows it. One row of a table for
-each picture: how many pixels differ, and the largest difference of one as a share of the picture's mean. Then the
-verdicts of two studies. Exit code 1 where a difference is above 1e-5 or a verdict is another.
+Renders every shipped scene small with both programs, in three ways and through the CCTV camera.
+Prints a row per picture: the number of different pixels, and the largest difference relative to the
+picture's mean. Then compares the verdicts of two studies. Exit code 1 if a difference is above 1e-5
+or a verdict differs.
 """
 import argparse
 import itertools
@@ -50,7 +51,8 @@ def pictures(programs, scene, out):
         for program, file in zip(programs, ("a.exr", "b.exr")):
             run(program, "render", scene, *SMALL, "--indirect", way, "-o", out / file, *more)
         wrong += compare(f"{name}, {way}", out / "a.exr", out / "b.exr")
-    for program, file in zip(programs, ("c.exr", "d.exr")):  # of one picture: what the camera's chain adds
+    for program, file in zip(programs, ("c.exr", "d.exr")):  # of one picture: differences added by
+                                                             # the camera's chain
         run(program, "degrade", out / "a.exr", "-o", out / file, "--preset", PRESET)
     return wrong + compare(f"{name}, degrade", out / "c.exr", out / "d.exr")
 

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Digests of what a program makes of every shipped scene, to show that a change of the code, or another number of threads or
-ranks, changed no result.
+"""Digests of a program's results for every shipped scene. They show that a change of the code, or
+another number of threads or ranks, changes no result.
 
 usage: digests.py [--scene NAME] [--threads N[,M ...]] [--ranks R[,S ...]] PROGRAM [OTHER]
 
-Renders, relights, solves, degrades and studies each scene small. Prints one line per result, "name digest"; with OTHER
-or several numbers of threads only those that differ, and exits with 1 if any does; with --ranks those that PROGRAM, earthshine-mpi,
-makes otherwise by so many ranks of mpirun than alone (render, solve, study orbit and visibility; the rest runs alone). Times, sizes of memory, paths and
-versions are left out.
+Renders, relights, solves, degrades and studies each scene small. Prints one line per result, "name
+digest". With OTHER or several numbers of threads prints only different results, and exits with 1 if
+there are any. With --ranks prints results of PROGRAM (earthshine-mpi) that differ between so many
+ranks of mpirun and one process (render, solve, study orbit and visibility; the rest runs in one
+process). Times, memory sizes, paths and versions are excluded.
 """
 import argparse
 import csv
@@ -27,7 +28,7 @@ import exr  # noqa: E402
 
 PRESET = "sit-monochrome"
 SMALL = ["--size", "40x30", "--error", "0.2"]
-# Keys whose values are those of a run, not of its result.
+# Keys whose values depend on the run, not on the result.
 OF_THE_RUN = re.compile(r"build|scene_digest|seconds|_s$|time|memory|mib|bytes|version|date|command|written|file|path|folder|free")
 
 
@@ -38,13 +39,14 @@ def plain(value):
 
 
 def timeless(value):
-    """What the report can still be drawn from."""
+    """The data from which the report can still be drawn."""
     if isinstance(value, dict):
         return {key: None if key == "provenance" or key.endswith("seconds") else timeless(inner) for key, inner in value.items()}
     return [timeless(inner) for inner in value] if isinstance(value, list) else value
 
 
-# What each piece of work cost is told of threads, not of ranks, which find what other ranks have done.
+# Costs are compared between numbers of threads but not of ranks, because ranks use each other's
+# results.
 WITHOUT_COSTS = " without costs"
 
 
@@ -66,7 +68,7 @@ def of_file(path):
     return digest(path.read_bytes())
 
 
-# In a container, as root, more ranks than cores; no launching by ssh.
+# In a container, as root, more ranks than cores; without ssh.
 ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                             "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_plm": "isolated", "OMPI_MCA_mpi_yield_when_idle": "1"}
 
@@ -77,7 +79,7 @@ def run(program, *arguments):
         program = program[3:]
     done = subprocess.run([*program, *map(str, arguments), "--quiet", "--seed", "5"], cwd=TOP, env=ENVIRONMENT,
                           stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
-    if done.returncode not in (0, 3):  # 3: done, short of the error
+    if done.returncode not in (0, 3):  # 3: done, wanted error not reached
         sys.exit(f"{' '.join(map(str, arguments))}: exit {done.returncode}\n{done.stderr}")
     return done.stdout
 
@@ -119,7 +121,7 @@ def of_studies(program, out):
         for path in sorted(folder.glob("*.json")):
             for costs, told in by_costs(json.loads(path.read_text())).items():
                 yield f"study {study[0]} {path.name}{costs}", digest(plain(told))
-        # Their names hold the build that made them.
+        # Their names contain the build that wrote them.
         for number, found in enumerate(sorted(of_file(file) for file in folder.rglob("points/*.exr"))):
             yield f"study {study[0]} points {number}", found
         page, file = folder / "report.html", folder / "study.json"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The unit cube of 6 n^2 patches seen from inside, with its form factors in closed form (Howell's
-// catalogue, C-13 for facing and C-15 for perpendicular rectangles) and its radiosity by
-// fixed-point iteration on them.
+// The unit cube of 6 n^2 patches seen from inside, with form factors in closed form (Howell's
+// catalogue, C-13 for facing and C-15 for perpendicular rectangles) and the radiosity by
+// fixed-point iteration.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace earthshine::tests {
 
-// Sum over the corners (-1)^{i+j+k+l} G(x_i, y_j, xi_k, eta_l) / area of the first.
+// Sum over the corners of (-1)^{i+j+k+l} G(x_i, y_j, xi_k, eta_l), over the area of the first one.
 inline double corner_sum(const std::array<double, 2>& x, const std::array<double, 2>& y,
                          const std::array<double, 2>& xi, const std::array<double, 2>& eta,
                          const std::function<double(double, double, double, double)>& g) {
@@ -27,7 +27,7 @@ inline double corner_sum(const std::array<double, 2>& x, const std::array<double
   return sum / ((x[1] - x[0]) * (y[1] - y[0]));
 }
 
-// C-13: rectangles in planes a distance z apart.
+// C-13: rectangles in parallel planes at distance z.
 inline double facing_rectangles(const std::array<double, 2>& x, const std::array<double, 2>& y,
                                 const std::array<double, 2>& xi, const std::array<double, 2>& eta,
                                 double z) {
@@ -39,8 +39,8 @@ inline double facing_rectangles(const std::array<double, 2>& x, const std::array
   });
 }
 
-// C-15: x is the first's distance from the line in which the planes meet, xi the second's; y and
-// eta run along that line.
+// C-15: x is the first rectangle's distance from the intersection of the planes, xi the second
+// one's; y and eta are along the intersection.
 inline double perpendicular_rectangles(const std::array<double, 2>& x,
                                        const std::array<double, 2>& y,
                                        const std::array<double, 2>& xi,
@@ -57,8 +57,8 @@ class ExactCube {
  public:
   SceneBuilder builder;
 
-  // Every patch is a quad of its own; `material` names one per face (x = 0, x = 1, y = 0 ...) and
-  // cell of it along the next two axes.
+  // Every patch is a separate quad. `material` returns one per face (x = 0, x = 1, y = 0 ...) and
+  // cell (i, j) along the next two axes.
   ExactCube(int n,
             const std::function<std::uint32_t(SceneBuilder&, int face, int i, int j)>& material)
       : n_(n) {
@@ -84,7 +84,7 @@ class ExactCube {
 
   [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(6 * n_ * n_); }
 
-  // Patch k is quad k if nothing is cut further.
+  // Patch k is quad k if the quads are not divided.
   [[nodiscard]] double form_factor(std::size_t from, std::size_t to) const {
     const Place p = place(from), q = place(to);
     if (p.face == q.face) return 0.0;
@@ -106,7 +106,7 @@ class ExactCube {
     }
     double mean_source = 0.0;
     for (const double m : source) mean_source += m / double(count());
-    // Starting from the mean leaves only differences to converge, which fade fast at any rho.
+    // A start at the mean leaves only differences, which converge fast for any rho.
     std::vector<double> b(count(), mean_source / (1.0 - rho));
     for (int sweep = 0; sweep < 60; ++sweep) {
       std::vector<double> next(count());
@@ -117,7 +117,7 @@ class ExactCube {
       }
       double mean = 0.0;
       for (const double x : next) mean += x / double(count());
-      // The mean obeys mean = mean_source + rho mean exactly.
+      // The mean satisfies mean = mean_source + rho mean exactly.
       for (double& x : next) x += mean_source / (1.0 - rho) - mean;
       b = next;
     }

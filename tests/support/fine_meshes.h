@@ -8,7 +8,7 @@
 
 namespace earthshine::tests {
 
-// An object of the triangles that mesh(vertices, triangles) appends.
+// Adds an object of the triangles that mesh(vertices, triangles) appends.
 template <class Mesh>
 void add_mesh(SceneBuilder& builder, std::uint32_t material, Mesh mesh) {
   scenes::Scene& scene = builder.scene;
@@ -25,8 +25,8 @@ void add_mesh(SceneBuilder& builder, std::uint32_t material, Mesh mesh) {
   scene.objects.push_back(record);
 }
 
-// The parallelogram corner + s a + t b in n x n squares of two triangles; front where a turns to b
-// counter-clockwise.
+// The parallelogram corner + s a + t b in n x n squares of two triangles; the front is the side
+// from which a turns to b counter-clockwise.
 inline void fine_wall(SceneBuilder& builder, std::uint32_t material, const Vec3& corner,
                       const Vec3& a, const Vec3& b, std::uint32_t n) {
   std::vector<Vec3>& vertices = builder.scene.vertices;
@@ -47,7 +47,7 @@ inline void fine_wall(SceneBuilder& builder, std::uint32_t material, const Vec3&
   });
 }
 
-// A sphere of `rings` belts of 2 * rings squares, seen from outside.
+// A sphere of `rings` belts with 2 * rings squares each, front outward.
 inline void fine_sphere(SceneBuilder& builder, std::uint32_t material, const Vec3& centre,
                         double radius_m, std::uint32_t rings) {
   std::vector<Vec3>& vertices = builder.scene.vertices;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of IES LM-63 written in memory.
+// IES LM-63 files in memory.
 #pragma once
 
 #include <functional>
@@ -38,7 +38,7 @@ struct IesText {
   }
 };
 
-// 0, step, 2 step, ... last.
+// first, first + step, ... last.
 inline std::vector<double> steps(double first, double last, double step) {
   std::vector<double> list;
   for (double x = first; x < last + step / 2; x += step) list.push_back(x);

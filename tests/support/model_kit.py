@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes glTF, GLB and PNG files for tests, by their specifications and without the program's own code."""
+"""Writes glTF, GLB and PNG files for tests, by their specifications and without the program's code.
+"""
 import json
 import struct
 import zlib
@@ -8,7 +9,7 @@ LETTERS = {"b": 5120, "B": 5121, "h": 5122, "H": 5123, "I": 5125, "f": 5126}
 
 
 def png(width, height, pixel, channels=3):
-    """8 bits a channel; pixel(x, y) gives the numbers, row 0 at the top."""
+    """8 bits per channel; pixel(x, y) returns the values, row 0 at the top."""
     rows = b"".join(b"\0" + bytes(v for x in range(width) for v in pixel(x, y)) for y in range(height))
     colour = {1: 0, 3: 2, 4: 6}[channels]
 
@@ -19,7 +20,7 @@ def png(width, height, pixel, channels=3):
 
 
 class Model:
-    """A glTF file in the making: json is its tree, binary its one buffer."""
+    """Builder of a glTF file: json is its tree, binary its single buffer."""
 
     def __init__(self, **tree):
         self.json = {"asset": {"version": "2.0"}, "accessors": [], "bufferViews": [], "meshes": [], "nodes": [],
@@ -49,7 +50,7 @@ class Model:
         return len(self.json["accessors"]) - 1
 
     def image(self, data, kind="image/png"):
-        """A texture of its own for the bytes of a picture."""
+        """Adds a separate texture with the bytes of a picture."""
         self.json.setdefault("images", []).append({"bufferView": self.view(data), "mimeType": kind})
         self.json.setdefault("textures", []).append({"source": len(self.json["images"]) - 1})
         return len(self.json["textures"]) - 1
@@ -59,7 +60,7 @@ class Model:
         return len(self.json["materials"]) - 1
 
     def mesh(self, name, positions, triangles, material, uv=None, normals=None, letter="f", normalized=False, **node):
-        """A mesh and the node that it hangs on, of that name."""
+        """Adds a mesh and a node that uses it, both with this name."""
         attributes = {"POSITION": self.accessor(positions, letter, normalized)}
         if uv:
             attributes["TEXCOORD_0"] = self.accessor(uv)

@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Three small models with textures, and with the faults that exported meshes have; tests/cli/models_test.py has the
-right answers.
+"""Three small models with textures and the faults of exported meshes; tests/cli/models_test.py has
+the right answers.
 
 usage: models.py FOLDER
 
-  crate     OBJ, MTL and PNG: a closed box with a picture on each side, its faces exported twice and inside out
-  hall      GLB: a floor of squares (KHR_texture_transform, quantised places), walls exported with both windings, a lamp
-            and a camera of the file
-  grille    glTF beside its pictures: a grating cut out by an opacity mask, a screen that shines in squares
+  crate     OBJ, MTL and PNG: a closed box with a picture on each side; its faces are exported
+            twice and inside out
+  hall      GLB: a floor of squares (KHR_texture_transform, quantised positions), walls exported
+            with both windings, a lamp and a camera in the file
+  grille    glTF with separate pictures: a grating cut out by an opacity mask, a screen that emits
+            in squares
 """
 import json
 import pathlib
@@ -17,12 +19,12 @@ import sys
 import model_kit
 
 SQUARE = [(0, 1, 2), (0, 2, 3)]
-# Corners counter-clockwise from the lower left; v runs down in glTF.
+# Corners counter-clockwise from the lower left; v points down in glTF.
 UV = [(0, 1), (1, 1), (1, 0), (0, 0)]
 
 
 def squares(light, dark, alpha=None):
-    """A picture of 2 x 2 squares, light at the upper left."""
+    """A picture of 2 x 2 squares, bright at the upper left."""
     def pixel(x, y):
         value = light if (x + y) % 2 == 0 else dark
         return (value,) * 3 if alpha is None else (value,) * 3 + (255 if (x + y) % 2 == 0 else alpha,)
@@ -30,7 +32,7 @@ def squares(light, dark, alpha=None):
 
 
 def crate(sound=False):
-    """Files by name. Each side shows the picture upright, seen from outside: red left, green right."""
+    """Files by name. Each side shows the picture upright from outside: red left, green right."""
     corners = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
     faces = [(0, 1, 5, 4), (1, 3, 7, 5), (3, 2, 6, 7), (2, 0, 4, 6), (4, 5, 7, 6), (2, 3, 1, 0)]
     text = "mtllib crate.mtl\n" + "".join(f"v {x} {y} {z}\n" for x, y, z in corners)
@@ -44,7 +46,7 @@ def crate(sound=False):
 
 
 def hall(plain=False, sound=False):
-    """plain: the floor's mean in place of its squares. The floor is 4 m wide, its squares 0.25 m."""
+    """plain: the floor's mean instead of its squares. The floor is 4 m wide, its squares 0.25 m."""
     model = model_kit.Model(
         extensionsUsed=["KHR_lights_punctual", "KHR_mesh_quantization", "KHR_texture_transform"],
         extensionsRequired=["KHR_mesh_quantization", "KHR_texture_transform"],
@@ -62,21 +64,21 @@ def hall(plain=False, sound=False):
     floor = model.material(name="floor", pbrMetallicRoughness=floor)
     wall = model.material(name="wall", pbrMetallicRoughness={"metallicFactor": 0, "baseColorFactor": [0.7, 0.7, 0.7, 1]},
                           doubleSided=sound)
-    # 16 bits, normalised: 1 stands for 2 m.
+    # 16 bits, normalised: 1 is 2 m.
     model.mesh("floor", [(-32767, -32767, 0), (32767, -32767, 0), (32767, 32767, 0), (-32767, 32767, 0)], SQUARE, floor,
                UV, letter="h", normalized=True, scale=[2, 2, 2])
     backs = [] if sound else [(2, 1, 0), (3, 2, 0)]
     model.mesh("back", [(-2, 2, 0), (2, 2, 0), (2, 2, 3), (-2, 2, 3)], SQUARE + backs, wall)
     model.mesh("side", [(-2, -2, 0), (-2, 2, 0), (-2, 2, 3), (-2, -2, 3)], SQUARE + backs, wall)
     model.node(name="bulb", translation=[0.5, -0.5, 2], extensions={"KHR_lights_punctual": {"light": 0}})
-    # From the front, a little downward: a quarter turn about x, less 0.2 rad.
+    # From the front, slightly downward: a quarter turn about x, minus 0.2 rad.
     model.node(name="eye", camera=0, translation=[0, -5, 2.2], rotation=[0.6313, 0, 0, 0.7755])
     return {"hall.glb": model.glb()}
 
 
 def grille():
-    """A grating 2 m wide, half of it there, 1 m over a floor; a screen of 1 m2 below it that shines from half of its
-    area, 100 cd/m2."""
+    """A grating 2 m wide with holes over half its area, 1 m above a floor. A screen of 1 m2 below
+    it emits 100 cd/m2 from half of its area."""
     model = model_kit.Model(extensionsUsed=["KHR_materials_emissive_strength", "KHR_texture_transform"],
                             samplers=[{"magFilter": 9728}])
     model.json["images"] = [{"uri": "bars%20cut.png"}, {"uri": "squares.png"}]

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cases whose value is a radiosity. Those of a continuum have patches that are narrow where the
-// value is read; what is left of the discretisation was computed with the patches' exact form
-// factors (crossed strings, disks) and is the case's model_error.
+// Cases whose value is a radiosity. Cases of a continuum have narrow patches at the point of the
+// value. The remaining discretisation error was computed with exact form factors of the patches
+// (crossed strings, disks) and is the model_error of the case.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -18,14 +18,14 @@ void radiosity(Case& c, int rays) {
   c.rays = rays;
 }
 
-// Two facing plates alike: B = M / (1 - rho F), on average. Balancing takes 0.09 (squares) to 0.21
-// (disks) over the rays per patch off what lands in open scenes (docs/theory.md).
+// Two equal facing plates: mean B = M / (1 - rho F). In open scenes balancing reduces the landed
+// light by 0.09 (squares) to 0.21 (disks) over the rays per patch (docs/theory.md).
 double balancing_error(const Case& c, double rho) {
   return rho * c.record.value * c.record.value * 0.25 / c.rays;
 }
 
-// The faces of [0,1]^3 seen from inside, each of its own object and n x n patches, in the order
-// z = 0, z = 1, x = 0, x = 1, y = 0, y = 1.
+// The faces of [0,1]^3 seen from inside, each a separate object of n x n patches, in the order z =
+// 0, z = 1, x = 0, x = 1, y = 0, y = 1.
 void room(int n, const std::array<std::uint32_t, 6>& material, CaseScene& s) {
   const Vec3 o(0), x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
   const Vec3 corner[] = {o, z, o, x, o, y}, u[] = {x, y, y, z, z, x}, v[] = {y, x, z, y, x, z};
@@ -54,19 +54,20 @@ void shining_ceiling(const CaseRecord& r, Case& c) {
   const std::uint32_t dark = c.made.material(r.at("rho")), lit = c.made.material(r.at("rho"), 1.0);
   const int n = int(r.at("n"));
   room(n, {dark, lit, dark, dark, dark, dark}, c.made);
-  // The walls are alike: any of them is the mean of all.
+  // The walls are equal: each of them has the mean of all.
   c.from = named(r, "floor_mean") ? 0 : named(r, "ceiling_mean") ? 1 : 2;
   radiosity(c, n > 4 ? 2048 : 8192);
 }
 
-// A sphere of `around` meridians whose zones have the shares of its area that the case says, as
-// polygons. F_ij = A_j / A of the sphere holds for its facets to second order in their angles.
+// A polygonal sphere of `around` meridians; its zones have the given shares of its area. F_ij = A_j
+// / A of the sphere holds for its facets to second order in their angles.
 class ZonedSphere {
  public:
   static constexpr int around = 64;
 
   explicit ZonedSphere(const std::vector<double>& share) {
-    // With every zone but the last of the wanted area, look for the total that the last fits.
+    // Every zone but the last gets its area; bisection finds the total area for which the last one
+    // fits.
     double low = 2.0 * base::pi, high = 4.0 * base::pi;
     for (int step = 0; step < 60; ++step) {
       const double total = 0.5 * (low + high);
@@ -88,7 +89,7 @@ class ZonedSphere {
   }
 
  private:
-  // Angles from the south pole, bands of about a meridian's width.
+  // Angles from the south pole; bands are about as wide as a meridian.
   static int bands(std::size_t zone) { return zone < 3 ? 8 : 16; }
   [[nodiscard]] double at(std::size_t k, int band) const {
     return ends_[k] + (ends_[k + 1] - ends_[k]) * band / bands(k);
@@ -130,7 +131,8 @@ void sphere_zones(const CaseRecord& r, Case& c) {
   }
   c.from = std::size_t(r.at("zone"));
   radiosity(c, 64);
-  // Found with facets of half and of a quarter of the angle too, falling fourfold each time.
+  // Measured by convergence: with half and a quarter of the angle the error falls fourfold each
+  // time.
   c.model_error = rho.size() > 1 ? 7e-4 : 2e-4;
 }
 
@@ -162,15 +164,15 @@ void triangular_duct(const CaseRecord& r, Case& c) {
   radiosity(c, 16384);
 }
 
-// Closer together towards the ends of [0, 1].
+// Points in [0, 1], denser toward both ends.
 std::vector<double> graded(int n) {
   std::vector<double> x;
   for (int k = 0; k <= n; ++k) x.push_back(0.5 * (1.0 - std::cos(base::pi * k / n)));
   return x;
 }
 
-// Where the value at a place is wanted, a narrow cell there. Means do without: patches that hardly
-// any ray meets cost the balanced form factors accuracy.
+// A value at a point needs a narrow cell there. Means do not: patches with very few ray hits reduce
+// the accuracy of balanced form factors.
 constexpr double narrow = 2e-4;
 
 void two_strips(const CaseRecord& r, Case& c) {

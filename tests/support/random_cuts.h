@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Patches with random trees: some cells cut once, some many times, in no order.
+// Patches with random subdivision trees: some cells cut once, some many times, in random order.
 #pragma once
 
 #include "base/numbers/random.h"
@@ -7,7 +7,7 @@
 
 namespace earthshine::tests {
 
-// graded: the cuts of a round all go one way, and none leaves a neighbour more than twice as long.
+// graded: all cuts of a round have one direction, and no neighbour becomes more than twice as long.
 inline radiosity::Patches random_cuts(radiosity::Patches patches, int rounds, double share,
                                       std::uint64_t seed, bool graded = false) {
   using radiosity::Cut;
@@ -25,7 +25,7 @@ inline radiosity::Patches random_cuts(radiosity::Patches patches, int rounds, do
   return patches;
 }
 
-// Every cell halved along s and then along t.
+// Halves every cell along s, then along t.
 inline radiosity::Patches all_in_four(radiosity::Patches patches) {
   for (const radiosity::Cut cut : {radiosity::Cut::S, radiosity::Cut::T}) {
     patches = radiosity::split(patches, std::vector(patches.count(), cut)).patches;

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The table of docs/log/scaling.md: seconds of `solve` and `render` on R ranks of one thread, from what one rank was measured to need.
+"""The table of docs/log/scaling.md: seconds of `solve` and `render` on R ranks of one thread, from
+measurements with one rank.
 
 usage: ranks_model.py [BYTES-PER-SECOND [SECONDS-PER-MESSAGE]]
 """
@@ -8,12 +9,12 @@ import dataclasses
 import math
 import sys
 
-BANDS = 16  # of rows, in which columns are summed (radiosity/factors/column_sums.h)
+BANDS = 16  # bands of rows for sums of columns (radiosity/factors/column_sums.h)
 RANKS = (1, 2, 4, 8, 16, 64, 256, 1024, 4096)
 
 
-# One thread's seconds, of a profile of `solve` with 493083 patches (docs/log/scaling.md): of an entry in a pass of columns' sums; of a
-# patch in files and tables.
+# Seconds of one thread, from a profile of `solve` with 493083 patches (docs/log/scaling.md): of one
+# entry in a pass of column sums, and of one patch in files and tables.
 SUM_S, PATCH_S = 1.54e-9, 5.9e-6
 
 
@@ -23,14 +24,14 @@ class Case:
     patches: int
     entries: int
     sweeps: int       # of the balance
-    filled: bool      # hits: the entries are exchanged once more
+    filled: bool      # hits are filled in: the entries are exchanged once more
     seconds: float    # of one rank
-    columns: int = 6  # of the linear solve: 3 a light group
+    columns: int = 6  # of the linear solve: 3 per light group
     products: int = 54
 
     @property
     def sums(self):
-        """Of columns: rows of a band one after another."""
+        """Column sums: the rows of a band are added one after another."""
         return SUM_S * self.entries * self.sweeps
 
     @property
@@ -39,20 +40,23 @@ class Case:
 
 
 def exchange(case, ranks, bytes_per_s, message_s):
-    """Seconds: bytes that come to a rank, and messages one after another. A gather goes round a ring, a swap to each."""
+    """Seconds: bytes received by a rank, and sequential messages. A gather runs in a ring, an
+    all-to-all sends to each rank."""
     if ranks == 1:
         return 0.0
     others = ranks - 1
     entries = (8 + (12 if case.filled else 0)) * case.entries / ranks
-    # What rows found; in each sweep what is multiplied; row scales at the end; what each product is of, in fours of columns; four
-    # floats a patch and column of the solution. Sums in chunks of 64 patches.
+    # Results of rows; the vector in each sweep; row scales at the end; the vector of each product,
+    # in groups of four columns; four floats per patch and column of the solution. Sums are in
+    # chunks of 64 patches.
     to_all = case.patches * (64 + 32 * case.sweeps + 8 + 32 * math.ceil(case.columns / 4) * case.products + 16 * case.columns
                              + 8 / 64 * (2 * case.sweeps + 5 / 2 * case.products))
-    sums = case.patches * 8 * case.sweeps * max(1.0, BANDS / ranks, ranks / BANDS)  # in turn within a band
+    sums = case.patches * 8 * case.sweeps * max(1.0, BANDS / ranks, ranks / BANDS)  # sequential
+                                                                                    # within a band
     messages = (16 * 2 * others  # rows to their ranks
                 + case.sweeps * (2 + 2) * others + case.sweeps * max(0, ranks / BANDS - 1)
-                + case.products * (1 + 1.5) * others  # what is multiplied; three times sums in two products
-                + 10 * ranks * math.log2(ranks))  # loops after which each rank speaks in turn
+                + case.products * (1 + 1.5) * others  # the vector; sums three times in two products
+                + 10 * ranks * math.log2(ranks))  # loops after which each rank broadcasts in turn
     return (entries + to_all + sums) / bytes_per_s + messages * message_s
 
 
@@ -62,7 +66,8 @@ def seconds(case, ranks, bytes_per_s, message_s):
             + exchange(case, ranks, bytes_per_s, message_s))
 
 
-# Of a pixel in all loops together: what gather points found of the solution (100 bytes), of paths (70), sums of samples (80).
+# Bytes per pixel in all loops: gather-point results of the solution (100) and of paths (70), sums
+# of samples (80).
 PIXEL_BYTES = 250
 LOOPS = 5  # over tiles: of gather points twice, of lobes, of camera samples twice
 
@@ -71,17 +76,18 @@ LOOPS = 5  # over tiles: of gather points twice, of lobes, of camera samples twi
 class Picture:
     name: str
     pixels: int
-    tiles: int      # of 8 x 8 pixels, which one rank takes at a time
+    tiles: int      # of 8 x 8 pixels, taken by a rank one at a time
     seconds: float  # of one rank
-    alone: float    # 2 t(2) - t(1) of what was measured: reading, sharing between points, files, and what waited
+    alone: float    # 2 t(2) - t(1) of the measurement: reading, sharing between points, files,
+                    # waiting
 
     def on(self, ranks, bytes_per_s, message_s):
-        """Seconds, and of them what is exchanged."""
+        """Seconds in all, and seconds of communication."""
         if ranks == 1:
             return self.seconds, 0.0
         shared = self.seconds - self.alone
-        # Each takes tiles from the first rank's counter, one after another, until each has heard that there are no more; then each
-        # says in turn how much it has and what. Half a tile is waited for.
+        # Each rank takes tiles from rank 0's counter until none is left. Then each broadcasts the
+        # number and the data of its tiles. The mean wait is half a tile.
         messages = LOOPS * (self.tiles + ranks + 2 * ranks * math.log2(ranks))
         exchanged = PIXEL_BYTES * self.pixels / bytes_per_s + messages * message_s
         return shared / min(ranks, self.tiles) + 0.5 * shared / self.tiles + self.alone + exchanged, exchanged

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cases between rectangles: the scene is exactly the case.
+// Cases between rectangles: the scene has exactly the geometry of the case.
 #include <cmath>
 #include <optional>
 
@@ -8,7 +8,7 @@
 namespace earthshine::tests {
 namespace {
 
-constexpr int cells = 4;  // rectangles are cut in 4 x 4 patches
+constexpr int cells = 4;  // rectangles are divided into 4 x 4 patches
 constexpr int many_rays = 16384;
 
 void facing_squares(const CaseRecord& r, Case& c) {
@@ -31,7 +31,7 @@ void facing_rectangles_anywhere(const CaseRecord& r, Case& c) {
   c.rays = many_rays;
 }
 
-// From a floor of width w to a wall of height h, both l long, at an angle.
+// From a floor of width w to a wall of height h, both of length l, at an angle.
 void hinged(double w, double h, double l, double angle, Case& c) {
   const std::uint32_t m = c.made.material(0.5);
   c.from = c.made.object("first", m);
@@ -60,7 +60,7 @@ void perpendicular_anywhere(const CaseRecord& r, Case& c) {
   c.rays = many_rays;
 }
 
-// Mirrors at both ends of strips along y that lie in [0, w] x [0, h].
+// Mirrors at both ends of strips along y within [0, w] x [0, h].
 void mirror_ends(double w, double h, Case& c) {
   const double l = strip_length;
   c.made.object("ends", c.made.mirror());
@@ -90,13 +90,13 @@ void perpendicular_strips(const CaseRecord& r, Case& c) {
   c.rays = 2 * many_rays;
 }
 
-// A face of the unit cube seen from inside, front along u x v, and one cell of n x n of it.
+// A face of the unit cube seen from inside, front along u x v, and one of its n x n cells.
 struct Face {
   Vec3 corner, u, v;
   int n = 0, i = 0, j = 0;  // n = 0: no cell
 };
 
-// All of the face but its cell.
+// The face without its cell.
 void add_rest(const Face& f, CaseScene& scene) {
   const auto part = [&](double u0, double u1, double v0, double v1) {
     if (u1 <= u0 || v1 <= v0) return;
@@ -118,7 +118,7 @@ void add_cell(const Face& f, CaseScene& scene) {
   scene.grid(f.corner + (f.i / n) * f.u + (f.j / n) * f.v, f.u / n, f.v / n, cells, cells);
 }
 
-// The closed room with a cell of the floor and, of the ceiling or the wall x = 0, another.
+// The closed room with one cell of the floor and one of the ceiling or of the wall x = 0.
 void cube_cells(const CaseRecord& r, Case& c, const std::optional<Face>& second) {
   const Vec3 o(0), x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
   const int n = int(r.at("n"));

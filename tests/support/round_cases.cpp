@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cases with round bodies, made of polygons with the same area (disks, spheres) or the same
-// circumference (cylinders). What that leaves was computed for the polygons themselves: contour
-// integrals between regular n-gons for disks and cavities, sums of point-to-polygon factors over
-// the faces for geodesic spheres.
+// Cases with round bodies, made of polygons with the same area (disks, spheres) or circumference
+// (cylinders). The remaining error was computed for the polygons: contour integrals between regular
+// n-gons for disks and cavities, sums of point-to-polygon factors over the faces for geodesic
+// spheres.
 #include <cmath>
 
 #include "tests/support/case_builders.h"
@@ -10,8 +10,8 @@
 namespace earthshine::tests {
 namespace {
 
-constexpr int corners = 64;        // of disks: their factors are within 1.3e-6
-constexpr int smooth_sides = 512;  // of cylinders: within 1e-5
+constexpr int corners = 64;        // of disks: errors of their factors are below 1.3e-6
+constexpr int smooth_sides = 512;  // of cylinders: errors below 1e-5
 
 void disk(CaseScene& s, double inner, double outer, double z, bool up) {
   s.ring(corners, same_area_radius(corners, inner), z, same_area_radius(corners, outer), z, !up);
@@ -35,8 +35,8 @@ void annuli(const CaseRecord& r, Case& c) {
   disk_pair(r.at("r1i"), r.at("r1o"), r.at("r2i"), r.at("r2o"), r.at("h"), c);
 }
 
-// A surface element: a square of 0.1 mm, where bodies are 1 cm away or more. In 32 x 32 patches, so
-// that it sends many rays.
+// A surface element: a square of 0.1 mm, at least 1 cm from all bodies. 32 x 32 patches, so that it
+// casts many rays.
 void element(const Vec3& at, const Vec3& normal, Case& c) {
   constexpr double size = 1e-4;
   const base::Frame3 frame = base::frame_around(normal);
@@ -69,7 +69,7 @@ void element_to_sphere(const CaseRecord& r, Case& c) {
   const double h = r.at("H"), tilt = base::radians(r.at("theta_deg"));
   element({0, 0, -h}, {std::sin(tilt), 0, std::cos(tilt)}, c);
   c.to = c.made.object("sphere", 0);
-  const bool close = h < 1.1;  // where facets can be told apart
+  const bool close = h < 1.1;  // close enough for facets to matter
   c.made.sphere(Vec3(0), 1.0, close ? 5 : 4);
   c.rays = close ? 128 : 256;
   c.model_error = close ? 2e-5 : 7e-6;
@@ -99,7 +99,7 @@ void sphere_to_sphere(const CaseRecord& r, Case& c) {
   c.made.sphere(Vec3(0), r.at("r2"), 4);
 }
 
-// Within each other, a convex body in any other: the factor is a ratio of areas, exactly.
+// Convex bodies inside each other: the factor is exactly a ratio of areas.
 void spheres_in_spheres(const CaseRecord& r, Case& c) {
   const std::uint32_t m = c.made.material(0.5);
   c.from = c.made.object("outer", m);
@@ -164,7 +164,7 @@ void side_to_itself(const CaseRecord& r, Case& c) { cavity(r, c, 2, 2); }
 void base_to_side(const CaseRecord& r, Case& c) { cavity(r, c, 0, 2); }
 void side_to_base(const CaseRecord& r, Case& c) { cavity(r, c, 2, 0); }
 
-// All three zones at once: the values are those of a network of whole surfaces.
+// All three zones together: the values are for a network of whole surfaces.
 void cylinder_network(const CaseRecord& r, Case& c) {
   closed_cylinder(1.0, 1.5, c);
   c.kind = CaseKind::Network;
@@ -173,8 +173,8 @@ void cylinder_network(const CaseRecord& r, Case& c) {
   c.from = r.name.find("side") != std::string::npos ? 2 : 0;
 }
 
-// Base over lateral area is the sine of the faces' half angle: a pyramid with that angle has the
-// cone's factor exactly.
+// Base over lateral area is the sine of the faces' half angle, so that a pyramid with this angle
+// has exactly the cone's factor.
 void cone(const CaseRecord& r, Case& c) {
   const double half_angle = base::radians(r.at("half_angle_deg"));
   const double radius = 1.0 / std::cos(base::pi / corners), h = 1.0 / std::tan(half_angle);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes made in memory, so that a law's test shows all of its input.
+// Scenes built in memory, so that a test of a law shows all of its input.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ class SceneBuilder {
     return static_cast<std::uint32_t>(scene.materials.size() - 1);
   }
 
-  // A parallelogram of its own object; front where its corners run counter-clockwise.
+  // A parallelogram as a separate object; the front is where its corners run counter-clockwise.
   void quad(std::uint32_t material, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     const auto object = static_cast<std::uint32_t>(scene.objects.size());
     scenes::Object record;
@@ -43,7 +43,7 @@ class SceneBuilder {
     scene.triangles.push_back({{v, v + 2, v + 3}, object, material, object});
   }
 
-  // Square of side `size` in the plane z = height, centred on the axis, front up or down.
+  // Square of side `size` at height `height`, centred on the axis, front up or down.
   void plate(std::uint32_t material, double size, double height, bool up) {
     const double h = size / 2;
     if (up) {
@@ -64,7 +64,7 @@ class SceneBuilder {
   }
 };
 
-// What every stage needs beside the scene.
+// Input of every stage besides the scene.
 struct Prepared {
   const scenes::Scene& scene;
   scenes::LightGroups groups;

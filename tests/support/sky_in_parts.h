@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same sky whole and in parts, so that what the parts give can be held against the whole.
+// The same sky as a whole and in parts, for comparison.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,8 @@ inline scenes::Earth even_earth(const Vec3& direction, double half_angle_deg, do
   return earth;
 }
 
-// The scene's uniform Earth in about `wanted` cells, its Sun as the only one of the parts.
+// Divides the scene's uniform Earth into about `wanted` cells; its Sun becomes the only Sun of the
+// parts.
 inline scenes::Scene in_parts(scenes::Scene scene, std::size_t wanted) {
   scenes::SkyParts parts;
   if (scene.sun) parts.suns.push_back(*scene.sun);

@@ -20,7 +20,7 @@ std::string in_std_errors(const Case& of, const CaseResult& found) {
   return fmt::format("{:+.2f}", found.error(of) / found.std_error);
 }
 
-// The exact method is for some thousand patches and follows no mirrors.
+// The exact method supports some thousand patches and no mirrors.
 constexpr std::size_t most_patches = 1600;
 constexpr double exact_gate = 1e-6;
 

@@ -21,7 +21,7 @@ using Corners = std::array<Vec3, 4>;  // counter-clockwise seen from the front
 
 const Vec3 up{0, 0, 1}, down{0, 0, -1}, inward_y{0, 1, 0};  // inward from the wall y = 0
 
-// A black square of 2 cm about a point.
+// A black square of 2 cm centred on a point.
 void receiver(tests::SceneBuilder& builder, std::uint32_t black, const Vec3& point,
               const Vec3& normal) {
   const Vec3 along = 0.01 * Vec3(1, 0, 0);
@@ -30,8 +30,8 @@ void receiver(tests::SceneBuilder& builder, std::uint32_t black, const Vec3& poi
                point - along + across);
 }
 
-// Illuminance by a polygon of exitance 1 of which nothing is hidden or lies behind the point:
-// sum of angle_k normal . unit(r_k x r_k+1) over its edges, over 2 pi (Lambert 1760).
+// Illuminance by a polygon of exitance 1 that is unoccluded and in front of the point: sum over its
+// edges of angle_k normal . unit(r_k x r_k+1), over 2 pi (Lambert 1760).
 double by_polygon(const Vec3& point, const Vec3& normal, const Corners& corners) {
   double sum = 0.0;
   for (std::size_t k = 0; k < corners.size(); ++k) {
@@ -44,13 +44,13 @@ double by_polygon(const Vec3& point, const Vec3& normal, const Corners& corners)
   return sum / (2.0 * pi);
 }
 
-// Receivers come first: object k lies at point k.
+// Receivers come first: object k is at point k.
 double at_receiver(const SolveReport& report, std::size_t point) {
   return report.objects[point].illuminance_lx.g;
 }
 
-// "5.2": 1000 cd straight down, as the cosine to the sides, 3 m above a plane:
-// E = 1000 cos^2 / d^2 = 1000 h^2 / d^4.
+// "5.2": 1000 cd straight down, falling as the cosine, 3 m above a plane: E = 1000 cos^2 / d^2 =
+// 1000 h^2 / d^4.
 CieCase point_source() {
   CieCase c{"5.2", "lx", {}, {}, at_receiver};
   tests::SceneBuilder builder;
@@ -88,8 +88,8 @@ CieCase point_source() {
   return c;
 }
 
-// The line of points on the wall y = 0 that 5.3, 5.6 and 5.7 have in common, and one on the floor
-// or ceiling; each with the closed form for `visible`, which may depend on the point.
+// Points on a line of the wall y = 0, common to 5.3, 5.6 and 5.7, and on a line of the floor or
+// ceiling, with the closed form for the polygon `visible` from each point.
 struct Lines {
   std::vector<std::pair<double, double>> wall;   // z, reference
   std::vector<std::pair<double, double>> level;  // y, reference
@@ -113,8 +113,8 @@ void add_lines(const Lines& lines, double exitance, tests::SceneBuilder& builder
   }
 }
 
-// "5.3": 1 x 1 m of 1000 cd in the middle of the ceiling of a room of 4 x 4 x 3 m. Its black walls
-// give no light, so that they are left out.
+// "5.3": 1 x 1 m of 1000 cd in the middle of the ceiling of a room of 4 x 4 x 3 m. The black walls
+// are omitted because they reflect no light.
 CieCase area_source() {
   CieCase c{"5.3", "lx", {}, {}, at_receiver};
   tests::SceneBuilder builder;
@@ -137,7 +137,7 @@ CieCase area_source() {
   return c;
 }
 
-// A box of shared walls, its faces' fronts inside.
+// A box of shared walls with fronts inside.
 void room(tests::SceneBuilder& builder, const scenes::Material& material, const Vec3& size) {
   const std::uint32_t m = builder.material(material);
   builder.room({m, m, m, m, m, m});
@@ -163,7 +163,7 @@ double mean_illuminance(const SolveReport& report, int channel) {
 
 constexpr double flux_lm = 10000.0;
 
-// "5.4": of 10 000 lm in a closed black room all land.
+// "5.4": in a closed black room all of 10 000 lm land.
 CieCase closed_black_room() {
   CieCase c{"5.4", "lm", {}, {{"all surfaces", flux_lm, flux_lm}}, {}};
   tests::SceneBuilder builder;
@@ -177,7 +177,7 @@ CieCase closed_black_room() {
   return c;
 }
 
-// "5.6": a floor of 4 x 4 m, evenly lit, is all that reflects: E over what it gives off, in %.
+// "5.6": only a uniformly lit floor of 4 x 4 m emits: E over its exitance, in %.
 CieCase lit_floor() {
   CieCase c{"5.6", "%", {}, {}, at_receiver};
   tests::SceneBuilder builder;
@@ -192,8 +192,9 @@ CieCase lit_floor() {
   return c;
 }
 
-// "5.7": a wall of 4 x 3 m at y = 4, evenly lit, and a black obstruction of 4 x 0.2 x 1 m before
-// it. From the points, all at x = 2, the wall is seen above the line over its top.
+// "5.7": a uniformly lit wall of 4 x 3 m at y = 4 and a black obstruction of 4 x 0.2 x 1 m before
+// it. From the points, all at x = 2, the wall is visible above the line over the top of the
+// obstruction.
 CieCase lit_wall_behind_an_obstruction() {
   CieCase c{"5.7", "%", {}, {}, at_receiver};
   tests::SceneBuilder builder;
@@ -225,7 +226,7 @@ CieCase lit_wall_behind_an_obstruction() {
 }
 
 // "5.8": a closed cube of 4 m with 10 000 lm in its middle: indirect E = flux rho / (S (1 - rho)).
-// Light of one colour does not turn into another: three reflectances at a time, one per channel.
+// Colours are independent: each scene tests three reflectances, one per channel.
 CieCase cube(const std::array<std::pair<double, double>, 3>& of_channel) {
   constexpr double area_m2 = 6 * 4 * 4;
   CieCase c{"5.8", "lx", {}, {}, {}};

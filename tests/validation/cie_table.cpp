@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CIE 171:2006: illuminances with nothing set but a wanted error of 0.5 %.
+// CIE 171:2006: illuminances with default settings and a wanted error of 0.5 %.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double wanted_error = 0.005;
 
-// As `solve --error` does it: once where nothing reflects, else until the error is reached.
+// As `solve --error`: one solve if no surface reflects, else solves until the error is reached.
 radiosity::SolveReport solve(scenes::Scene scene, std::uint64_t seed) {
   scene.quality.error = wanted_error;
   const tests::Prepared made(scene);
@@ -29,7 +29,7 @@ radiosity::SolveReport solve(scenes::Scene scene, std::uint64_t seed) {
   return studies::reach_surfaces(made, wanted, seed, {}).solution.report;
 }
 
-// A share of what is right, or, where that is 0, of the largest of the case.
+// Error relative to the right value or, if this is 0, to the largest value of the case.
 double off(double found, double right, double largest) {
   return (found - right) / (right != 0.0 ? right : largest);
 }
@@ -44,7 +44,7 @@ void cie_table(const Options& options, Verdict& verdict) {
   double worst = 0.0;
   std::set<std::string> done;
   for (CieCase& c : cie_cases()) {
-    // The cubes take nearly all of the time.
+    // The cubes take most of the time.
     if (options.quick && c.name == "5.8") continue;
     const radiosity::SolveReport report = solve(std::move(c.scene), options.seed);
     double largest = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a patch costs in seconds and bytes, from a thousand patches to two hundred thousand.
+// Seconds and bytes per patch, from a thousand to two hundred thousand patches.
 #include <fmt/format.h>
 #include <malloc.h>
 
@@ -16,8 +16,8 @@
 namespace earthshine::validation {
 namespace {
 
-// Linux keeps the most memory that the process had at once, since it was last told to forget. What
-// the heap holds back from earlier runs goes first.
+// Resets the peak memory that Linux records for the process. First returns unused heap memory of
+// earlier runs.
 void forget_peak_memory() {
   malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << "5";
@@ -31,7 +31,7 @@ double peak_bytes() {
   return 0.0;
 }
 
-// A closed room of 4 m with 5 x 5 x 5 boxes in it: a patch sees many bodies, near and far.
+// A closed room of 4 m with 5 x 5 x 5 boxes: each patch sees many near and distant bodies.
 scenes::Scene room_of_boxes() {
   tests::CaseScene s;
   const std::uint32_t wall = s.material(0.7), lit = s.material(0.7, 100.0), box = s.material(0.5);
@@ -53,7 +53,7 @@ scenes::Scene room_of_boxes() {
   return s.scene;
 }
 
-// Slope of log y over log x.
+// Slope of log y over log x, by least squares.
 double exponent(const std::vector<double>& x, const std::vector<double>& y) {
   double mx = 0.0, my = 0.0, xy = 0.0, xx = 0.0;
   const auto n = double(x.size());
@@ -68,7 +68,7 @@ double exponent(const std::vector<double>& x, const std::vector<double>& y) {
   return xy / xx;
 }
 
-// The edge that cuts the scene in about this many patches.
+// Patch edge that gives about this number of patches.
 double edge_for(const scenes::Scene& scene, double patches) {
   double low = 1e-3, high = 100.0;
   for (int step = 0; step < 24; ++step) {
@@ -96,7 +96,7 @@ void costs(const std::string& name, const scenes::Scene& scene) {
   for (const double wanted : {1e3, 3e3, 1e4, 3e4, 1e5, 2e5}) {
     radiosity::SolveOptions options;
     options.patch_edge_m = edge_for(scene, wanted);
-    // A scene has as many patches as facets at least.
+    // A scene has at least as many patches as facets.
     const auto count = double(radiosity::subdivide(scene, options.patch_edge_m).count());
     if (!patches.empty() && count < 1.2 * patches.back()) continue;
     const double before = [] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The closed cube of 6 x 16 x 16 patches and its gates; rays lost from a closed room.
+// Gates for the closed cube of 6 x 16 x 16 patches; rays lost from a closed room.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -41,8 +41,7 @@ void cube_table(const Options& options, Verdict& verdict) {
 }
 
 void leak_table(const Options& options, Verdict& verdict) {
-  // A room of shared edges and one whose walls are patches with vertices of their own, 10 km from
-  // the origin.
+  // The closed room of separate patches, without shared vertices, at the origin and 10 km away.
   const double wanted = options.quick ? 1e7 : 1e8;
   double rays = 0.0, lost = 0.0;
   tests::ExactCube cube = tests::grey_cube(16);

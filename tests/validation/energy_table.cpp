@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Furnaces of every reflectance, what balancing costs in open scenes, energy of the shipped scenes.
+// Furnaces of all reflectances, errors by balancing in open scenes, energy of the shipped scenes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ void furnace_table(const Options&, Verdict& verdict) {
     for (const radiosity::ObjectLight& o : s.report.objects) {
       worst = std::max(worst, std::abs(o.radiosity_lm_m2.g - 1.0));
     }
-    // Single values are stored in single precision.
+    // Patch values are stored in single precision.
     for (const float b : s.radiosity) worst = std::max(worst, std::abs(double(b) - 1.0) - 6e-8);
     fmt::print("| {} | {:.1e} | {:.1e} | {} |\n", rho, worst, s.report.groups[0].imbalance,
                s.report.iterations);
@@ -38,7 +38,7 @@ void furnace_table(const Options&, Verdict& verdict) {
 }
 
 void balancing_table(const Options& options, Verdict&) {
-  // Unit squares 1 m apart in 8 x 8 patches each; F between them in closed form.
+  // Unit squares at 1 m, each of 8 x 8 patches; F between them in closed form.
   constexpr double exact = 0.19982489569838;
   tests::CaseScene made;
   const std::uint32_t m = made.material(0.5);

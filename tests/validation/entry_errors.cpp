@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint32_t replicates = 8;
 constexpr std::size_t classes = 32;
 
-// Class k holds mean hits in [2^(k-4), 2^(k-3)).
+// Class k has mean hits in [2^(k-4), 2^(k-3)).
 std::size_t class_of(double hits) {
   const double k = std::floor(std::log2(hits)) + 4.0;
   return static_cast<std::size_t>(std::clamp(k, 0.0, double(classes - 1)));
@@ -81,7 +81,7 @@ RayErrorLaw measure_error_law(const scenes::Scene& scene, const scenes::RayQuery
     }
   }
   for (const Class& c : found) {
-    // A class of few entries says little: 20 entries of 7 degrees of freedom know it to 12 %.
+    // Classes of few entries are inaccurate: 20 entries of 7 degrees of freedom give 12 %.
     if (c.entries < 20.0 || c.binomial <= 0.0) continue;
     law.hits.push_back(c.hits / c.entries);
     law.gain.push_back(c.spread / c.binomial);
@@ -96,8 +96,8 @@ double entry_std_error(const RayErrorLaw& law, const FormFactors& f, std::size_t
 }
 
 double row_std_error(const RayErrorLaw& law, const FormFactors& f, std::size_t row) {
-  // A count's mean over the scramblings is its expectation, zeros included: the sum over what was
-  // hit estimates the sum over all.
+  // The mean of a count over scramblings is its expectation, zeros included, so that the sum over
+  // the entries with hits estimates the sum over all.
   double variance = 0.0;
   for (std::uint64_t e = f.row_start[row]; e < f.row_start[row + 1]; ++e) {
     const double error = entry_std_error(law, f, row, e);

@@ -12,9 +12,10 @@ namespace {
 
 TEST(EntryErrors, NormalisedErrorsOfEntriesAndRowsHaveVarianceOne) {
   // The cube of 6 x 8 x 8 patches against its closed forms, 6 seeds: z = (F - exact) / std_error
-  // over all entries of 4 hits or more in expectation, and |row error|^2 / row_std_error^2 over the
-  // rows. The law is known to a few per cent (48 pilots x 7 degrees of freedom x some hundred
-  // entries, spread over classes); patches near an edge and far ones share a class, hence 0.1.
+  // over all entries with at least 4 expected hits, and |row error|^2 / row_std_error^2 over the
+  // rows. The law is accurate to a few per cent (48 pilots x 7 degrees of freedom x some hundred
+  // entries, divided into classes). Patches near an edge and distant ones share a class, hence the
+  // tolerance 0.1.
   const tests::ExactCube cube(8, [](tests::SceneBuilder& builder, int, int, int) {
     if (builder.scene.materials.empty()) builder.material(tests::grey(0.5));
     return 0U;
@@ -40,8 +41,8 @@ TEST(EntryErrors, NormalisedErrorsOfEntriesAndRowsHaveVarianceOne) {
           const double exact = cube.form_factor(i, j), d = row[j] - exact;
           square_error += d * d;
           if (exact * rays < 4.0) continue;
-          // The error is judged by the law at the expected hits: at the hits found, few hits go
-          // with few expected and the ratio's mean is not 1 whatever the law.
+          // The error is compared with the law at the expected hits. At the hits found, small
+          // counts would have small errors stated, and the mean ratio would not be 1 for any law.
           square += d * d / law.variance(exact * rays);
           entries += 1.0;
           if (row[j] * rays >= 32.0) {
@@ -55,7 +56,7 @@ TEST(EntryErrors, NormalisedErrorsOfEntriesAndRowsHaveVarianceOne) {
     EXPECT_GT(entries, 10000.0);
     EXPECT_NEAR(square / entries, 1.0, 0.1) << rays;
     EXPECT_NEAR(rows, 1.0, 0.1) << rays;
-    // Binomial errors would be larger: the gain is well below 1 where many rays hit.
+    // Smaller than binomial: the gain is far below 1 for many hits.
     EXPECT_LT(law.variance(rays / 16.0) * rays / (1.0 / 16.0), 0.8);
   }
 }

@@ -1,15 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Are the stated errors honest? `./dev validate --errors` runs this; its output is a part of docs/data/validation.md.
+"""Validates stated errors. `./dev validate --errors` runs this; its output is a part of
+docs/data/validation.md.
 
     error_bounds.py PROGRAM [--quick] [--only NAME] [--cache DIR] [--seed N]
 
-Renders and solves shipped scenes, hard ones and random rooms by many settings, and compares what the program states with the
-true error against independent references (error_truth.py; their noise drops out): pictures against path-traced ones, of all
-light paths but caustics, as many as tell the true error; radiosities against two solutions of ten times the patches or, of
-scenes of which an error is asked, to half of the least of them: evenly cut patches, however many, are too large where light
-comes through a window. Of every scene pictures alone are asked for at 5, 2 and 1 %, too. Ends with code 1 unless at least 90 %
-of the true errors lie within the bounds and the median of bound over true error is 3 or less. References are kept in DIR
-(out/error-references).
+Renders and solves shipped scenes, hard scenes and random rooms with many settings. Compares the
+stated error with the true error against independent references, whose noise cancels
+(error_truth.py).
+
+Pictures are compared with path-traced ones of all light paths except caustics, as many as the true
+error needs. Radiosities are compared with two solutions of ten times the patches or, for scenes
+with a wanted error, with solutions to half of the smallest one: uniform patches of any number are
+too large where light comes through a window. Of every scene, pictures are also rendered to 5, 2 and
+1 %.
+
+Exit code 1 unless at least 90 % of the true errors are within the bounds and the median of bound
+over true error is at most 3. References are kept in DIR (out/error-references).
 """
 import argparse
 import concurrent.futures
@@ -31,9 +37,10 @@ import hard_scenes
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 FINER = 10  # of the references, in patches
-REFERENCE_RAYS = 512  # form-factor rays per patch of a reference, or as many as the settings have
+REFERENCE_RAYS = 512  # form-factor rays per patch of a reference, at least those of the settings
 REFERENCE_PATHS = 1024  # per pixel of a reference picture
-# Reference pictures are drawn, twice as many each time, until each true error is known to this share of it or of its bound.
+# Reference pictures are doubled in number until each true error is known to this share of itself or
+# of its bound.
 SURE, MOST_REFERENCES = 0.1, 32
 MOST_PATCHES = 100000  # of a reference solution: 5 GB
 HARD = ("small emitter", "sun spot", "pinhole", "baffle")
@@ -49,16 +56,16 @@ class Bench:
     def json(self, *words):
         run = subprocess.run([self.program, *map(str, words), "-q", "--json", "-j", "1"], cwd=self.folder,
                              stdin=subprocess.DEVNULL, capture_output=True, text=True)
-        if run.returncode not in (0, 3):  # 3: short of the wanted error, which is what is looked at
+        if run.returncode not in (0, 3):  # 3: wanted error not reached, which is under test
             raise RuntimeError(f"{' '.join(map(str, words))}: {run.stderr.strip()}")
         return json.loads(run.stdout)
 
     def scene(self, name, source, more):
-        """(path, text for the key of its references) of a scene given as file or text."""
+        """(path, text for the key of its references) of a scene given as a file or as text."""
         if isinstance(source, pathlib.Path):
-            # Without settings of its own, which would hold fast what is asked for here.
+            # Without its quality settings, which would fix values under test.
             text = re.sub(r"^\[quality\]\n(.+\n)*", "", source.read_text(), flags=re.MULTILINE)
-            folder = self.folder / name.replace("/", "-").replace(" ", "-")  # cases run side by side
+            folder = self.folder / name.replace("/", "-").replace(" ", "-")  # cases run in parallel
             folder.mkdir(exist_ok=True)
             meshes = sorted(source.parent.glob("meshes/*"))
             if meshes and not (folder / "meshes").exists():
@@ -70,7 +77,7 @@ class Bench:
         return path, source
 
     def sources_seen(self, path, more):
-        """Pixels of which a camera sample met a source itself: with black surfaces nothing else shines."""
+        """Pixels in which a camera sample hit a source: with black surfaces nothing else emits."""
         black = []
         for material in self.json("inspect", path)["materials"]:
             for key in ("diffuse", "specular", "mirror", "transmit"):
@@ -81,7 +88,7 @@ class Bench:
         return [light > 0 for light in error_truth.picture(out)[0]]
 
     def folder_of(self, path, text, more):
-        """Where the references of a scene are kept, with what its pictures show."""
+        """Folder of the references of a scene, by what its pictures show."""
         folder = self.cache / hash_of(text, str(REFERENCE_PATHS), "no caustics")[:16]
         if not (folder / "seen").exists():
             folder.mkdir(parents=True, exist_ok=True)
@@ -100,7 +107,8 @@ class Bench:
         return found
 
     def solutions(self, folder, path, patches, rays, asked):
-        """Words of two reference solutions for earthshine_surfaces; none of a scene that takes more patches than that."""
+        """Arguments of two reference solutions for earthshine_surfaces; empty if a scene needs too
+        many patches."""
         if FINER * patches > MOST_PATCHES:
             return []
         errors = [float(value) for setting in asked for key, value in zip(*[iter(error_scenes.ASKED[setting])] * 2) if key == "--error"]
@@ -112,7 +120,7 @@ class Bench:
         return found
 
     def true_errors(self, folder, path, more, judged):
-        """Of pictures, given as (luminances, bound): against as many references as tell them."""
+        """Tests pictures, given as (luminances, bound), against as many references as they need."""
         _, things = error_truth.picture(folder / "objects.exr", "object")
         count = 2
         while True:
@@ -125,7 +133,7 @@ class Bench:
             count *= 2
 
     def rows(self, name, source, more, asked):
-        """Everything that is asked of one scene."""
+        """Runs all tests of one scene."""
         path, text = self.scene(name, source, more)
         runs = []
         for setting in asked:
@@ -152,7 +160,7 @@ class Bench:
             for kind, report, truth in truths:
                 error = report["error"]
                 if truth.mean == 0:
-                    continue  # nothing that counts
+                    continue  # no pixel counts
                 parts = {key: part["estimate"] for key, part in error["parts"].items()}
                 found.append(error_tables.Row(kind, name, setting, report["patches"], error["estimate"] or 0.0,
                                  error["bound_95"] or 0.0, parts, truth))
@@ -160,7 +168,7 @@ class Bench:
 
 
 def cases(quick):
-    """All that is judged: as error_scenes.cases()."""
+    """All scenes and settings, as error_scenes.cases()."""
     yield from error_scenes.cases(quick)
     for hard in [] if quick else hard_scenes.all_of_them():
         if hard.name in HARD:
@@ -168,7 +176,7 @@ def cases(quick):
 
 
 def keep(path, make):
-    """Makes the file unless it is there; one that is there is whole."""
+    """Makes the file unless it exists; an existing file is complete."""
     if not path.exists():
         new = path.with_name(f"new-{os.getpid()}-{path.name}")
         make(new)
@@ -183,8 +191,8 @@ def hash_of(*what):
 
 
 def with_neighbours(seen, columns):
-    """Also the pixels about those that show a source: a sliver of it there may be met by one picture's samples and not by
-    another's, and would be all of the difference."""
+    """Also the neighbours of pixels that show a source: only one picture's samples may hit a sliver
+    of it there, which would dominate the difference."""
     near = [False] * len(seen)
     for k, is_seen in enumerate(seen):
         for x in range(max(0, k % columns - 1), min(columns, k % columns + 2)) if is_seen else ():
@@ -194,7 +202,7 @@ def with_neighbours(seen, columns):
 
 
 def overrides(words):
-    """What --set and --error among the words say, as KEY=VALUE."""
+    """The --set and --error arguments, as KEY=VALUE."""
     given = {"--set": "", "--error": "quality.error="}
     return [given[key] + value for key, value in zip(words[::2], words[1::2])]
 
@@ -204,7 +212,8 @@ def power_of_two(number):
 
 
 def rounded_up(number):
-    """To a power of the root of two, so that a program that cuts a little otherwise finds its references."""
+    """Rounded to a power of the root of two, so that a program with slightly different patches
+    finds its references."""
     return math.ceil(2 ** (math.ceil(2 * math.log2(number)) / 2))
 
 

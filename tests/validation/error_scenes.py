@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The scenes over which the stated errors are judged: those that ship, and rooms made at random."""
+"""Scenes for the validation of stated errors: shipped ones, and random rooms."""
 import math
 import pathlib
 import random
 
 LIBRARY = pathlib.Path(__file__).resolve().parents[2] / "scenes" / "library"
 
-# A luminaire that shines 60 degrees wide.
+# A luminaire with a beam of 60 degrees.
 IES = """IESNA:LM-63-2002
 [LUMINAIRE] flood
 TILT=NONE
@@ -19,7 +19,7 @@ TILT=NONE
 
 
 class Text:
-    """A scene file that grows by tables."""
+    """A scene file to which tables are appended."""
 
     def __init__(self, name):
         self.lines = ["format = 1", f'name = "{name}"', 'unit = "m"']
@@ -61,7 +61,7 @@ def numbers(value):
 
 
 def wall(axis, at, low, high, turned):
-    """A rectangle across an axis, its front towards +axis, or -axis if turned."""
+    """A rectangle across an axis; its front is toward +axis, or -axis if turned."""
     u, v = [(1, 2), (2, 0), (0, 1)][axis]
     corners = []
     for s, t in ((0, 0), (1, 0), (1, 1), (0, 1)):
@@ -72,10 +72,10 @@ def wall(axis, at, low, high, turned):
 
 
 class Room:
-    """A closed room, or one without or with a hole in its ceiling, and what stands in it."""
+    """A room, closed or with an opening in its ceiling, and its contents."""
 
     def __init__(self, number):
-        self.chance = random.Random(1000 + number).random  # the same in every Python
+        self.chance = random.Random(1000 + number).random  # equal for every version of Python
         self.number = number
         self.text = Text(f"room {number}")
         self.size = [self.between(2.5, 6), self.between(2.5, 6), self.between(2.2, 4)]
@@ -84,7 +84,7 @@ class Room:
         return low + (high - low) * self.chance()
 
     def grey(self, low=0.05, high=0.9):
-        """A reflectance, at times coloured."""
+        """A reflectance, sometimes coloured."""
         if self.chance() < 0.6:
             return self.between(low, high)
         return [self.between(low, high) for _ in range(3)]
@@ -109,7 +109,7 @@ class Room:
                 self.text.thing(paints[2], shape="quad", corners=wall(2, sz, [*low, 0], [*high, 0], True))
 
     def bodies(self, count, finish):
-        """finish: further keys of the first body's material."""
+        """finish: additional keys of the first body's material."""
         sx, sy, sz = self.size
         for k in range(count):
             paint = self.text.material(**({"diffuse": self.grey()} | (finish if k == 0 else {})))
@@ -130,7 +130,7 @@ class Room:
                                                               [x + r, y + r, z + 1.6 * r], [x - r, y + r, z + 1.6 * r]])
 
     def place(self):
-        """A lamp's: beneath the ceiling, out of the picture's middle."""
+        """Position of a lamp: below the ceiling, away from the picture's centre."""
         return [self.size[0] * self.between(0.3, 0.9), self.size[1] * self.between(0.3, 0.9),
                 self.size[2] * self.between(0.88, 0.96)]
 
@@ -149,7 +149,8 @@ class Room:
         elif kind == "ies":
             self.text.light(type=kind, file="flood.ies", position=at, aim=below)
         elif kind in ("small emitter", "wide emitter"):
-            # Below 5 % of the surface an emitter gets shadow rays, above form factors carry its light.
+            # Emitters below 5 % of the surface get shadow rays; form factors carry the light of
+            # larger ones.
             share = 0.004 if kind == "small emitter" else 0.08
             paint = self.text.material(diffuse=0.3, emit=1000.0)
             sx, sy, sz = self.size
@@ -182,7 +183,8 @@ SKIES = (("window", "sun"), ("open", "earth"), ("window", "wide sun"), ("open", 
 
 
 def room(number):
-    """The text of random room `number`; rooms 2, 5, 8, ... are lit from outside, the others by lamps."""
+    """The text of random room `number`. Rooms 2, 5, 8, ... are lit from outside, the others by
+    lamps."""
     made = Room(number)
     turn = number // 3
     outside = number % 3 == 2
@@ -200,8 +202,8 @@ def knobs(**values):
     return [word for key, value in values.items() for word in ("--set", f"quality.{key}={value}")]
 
 
-# What a user may ask for: an error, which the program then steers by, with or without a knob held fast, or knobs alone; and of
-# pictures without their solution an error.
+# Settings that users may choose: a wanted error with or without one fixed setting, or settings
+# only; and a wanted error of pictures without a solution.
 ASKED = {
     **{f"picture within {error}": ["--error", error] for error in ("0.05", "0.02", "0.01")},
     "error 0.1": ["--error", "0.1"],
@@ -219,7 +221,7 @@ PAIRS = (("error 0.1", "coarse patches"), ("error 0.05", "few patches"), ("error
          ("error 0.03", "plain gather"), ("error, even patches", "error, 8 gather rays"))
 
 SMALL = ["--size", "48x48"]
-# Of those that ship: what is asked for, and the picture.
+# Shipped scenes: settings, and the picture.
 SHIPPED = {
     "cornell-box/scene.toml": (["error 0.1", "error 0.05"], SMALL),
     "still-life/scene.toml": (["error 0.1", "few patches"], SMALL),
@@ -229,18 +231,18 @@ SHIPPED = {
     "sts46/day-earthshine.toml": (["error 0.1"], ["--camera", "B", *SMALL]),
     "sts46/night-lamps.toml": (["error 0.1"], ["--camera", "B", *SMALL]),
 }
-# And pictures of these alone by another camera.
+# Pictures of these scenes only, by another camera.
 ASIDE = [name for name in SHIPPED if name.startswith("sts46")]
 ROOMS = 22
 
 
 def with_pictures(asked):
-    """And pictures within each error that is not asked for already."""
+    """Adds pictures for each error that is not in the list."""
     return [*asked, *(one for one in PICTURES if ASKED[one] not in [ASKED[other] for other in asked])]
 
 
 def cases(quick=False):
-    """Yields (name, path or text, further arguments, names of what is asked)."""
+    """Yields (name, path or text, further arguments, names of settings)."""
     for number in range(4 if quick else ROOMS):
         yield f"room {number}", room(number), [], with_pictures(PAIRS[number % len(PAIRS)])
     for name, (asked, more) in SHIPPED.items():

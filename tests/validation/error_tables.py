@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What error_bounds.py found, as tables: how often the bounds held, and how often no more than was asked for came out."""
+"""Results of error_bounds.py as tables: how often bounds held, and how often wanted errors were
+reached."""
 import dataclasses
 import math
 
 import error_scenes
 import error_truth
 
-SHARE, MEDIAN = 0.9, 3.0  # asked for
-# Of a true error: below, the references' own noise and rounding decide, and a ratio says nothing.
+SHARE, MEDIAN = 0.9, 3.0  # required
+# Below this true error, noise of the references and rounding dominate, and a ratio has no meaning.
 LEAST = 1e-3
-UNSURE = 0.2  # standard error of the true error over the larger of it and the bound; less sure rows are marked
+UNSURE = 0.2  # limit of (standard error of the true error) / max(error, bound)
 
 
 @dataclasses.dataclass
@@ -37,30 +38,30 @@ class Row:
 
     @property
     def tells(self):
-        """Whether the references are sure enough of the true error to judge a single bound by it. Of solutions they do not say:
-        the noise of all points of a patch is the same."""
+        """Whether the references are accurate enough to test a single bound. Not for solutions: the
+        noise of all points of a patch is equal."""
         return self.kind == "solve" or doubt(self.truth, self.bound) <= UNSURE
 
     @property
     def by_error(self):
-        """Whether an error was asked for, not knobs."""
+        """Whether the setting is a wanted error."""
         return self.asked.startswith(("error", "picture"))
 
     @property
     def wanted(self):
-        """The error that was asked for with nothing else set; or None."""
+        """The wanted error without further settings; else None."""
         words = error_scenes.ASKED[self.asked]
         return float(words[1]) if len(words) == 2 and words[0] == "--error" else None
 
 
 def unsure(truth):
-    """Standard error of the true error, from that of its square, for the references' noise."""
+    """Standard error of the true error by the noise of the references, from that of its square."""
     root = math.sqrt(truth.of_references)
     return min(root, truth.of_references / (2 * truth.error)) if truth.error > 0 else root
 
 
 def doubt(truth, bound):
-    """The same over the larger of the true error and its bound."""
+    """The same, relative to the larger of the true error and its bound."""
     return unsure(truth) / max(bound, truth.error, LEAST)
 
 
@@ -79,7 +80,7 @@ def table(rows):
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     for row in rows:
         parts = ", ".join(f"{key.replace('_', ' ')} {percent(value)}" for key, value in row.parts.items()
-                          if value > 0.2 * row.estimate)  # those that make up 96 % of the square and more
+                          if value > 0.2 * row.estimate)  # 96 % of the square or more
         mark = ("" if row.within else " **outside**") + ("" if row.tells else " (?)")
         unsure_by = "" if row.kind == "solve" else f" ± {percent(row.unsure)}"
         ratio = f"{row.ratio:.2f}" if row.truth.error >= LEAST else ""
@@ -88,7 +89,7 @@ def table(rows):
 
 
 def summary(kind, rows):
-    """Prints how often the bound held; whether that is what was asked for."""
+    """Prints how often the bound held. Returns whether that is often enough."""
     share = sum(row.within for row in rows) / max(1, len(rows))
     unsure = math.sqrt(share * (1 - share) / max(1, len(rows)))
     ratios = [row.ratio for row in rows if not math.isnan(row.ratio)]
@@ -116,7 +117,7 @@ def summaries(rows):
 
 
 def reached(rows):
-    """Prints how often no more than what was asked for came out: --error E gives E."""
+    """Prints how often --error E gave at most E."""
     print("\n| asked for | true error of pictures no larger | in all | largest | of radiosities | in all | largest |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
     for wanted in sorted({row.wanted for row in rows if row.wanted}, reverse=True):
@@ -128,7 +129,7 @@ def reached(rows):
 
 
 def write(rows):
-    """Prints everything; whether all rows together are what was asked for."""
+    """Prints all tables. Returns whether all rows together meet the requirements."""
     good = summaries(rows)
     reached(rows)
     sure = [row for row in rows if row.tells]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""True errors, by two references whose chances are independent.
+"""True errors by two references with independent noise.
 
-With a picture L and references R1, R2 of independent noise and the same mean R, the mean over pixels of (L - R1)(L - R2)
-is that of (L - R)^2: what noise the references have is in one factor or the other, never in both.
+For a picture L and references R1, R2 of independent noise and the same mean R, the mean over pixels
+of (L - R1)(L - R2) is the mean of (L - R)^2: the noise of a reference is in one factor only.
 """
 import array
 import math
@@ -17,7 +17,7 @@ WEIGHTS = (0.2126, 0.7152, 0.0722)  # Rec. 709
 
 
 def picture(path, layer=None):
-    """(luminance, layer) of every pixel, from an EXR file."""
+    """(luminance, layer) of every pixel of an EXR file."""
     _, _, _, channels = exr.read(path)
     light = array.array("d", (sum(w * v for w, v in zip(WEIGHTS, rgb))
                               for rgb in zip(channels["R"], channels["G"], channels["B"])))
@@ -29,22 +29,24 @@ def columns(path):
 
 
 class Truth:
-    """error and bias: relative to `mean`; doubt: standard error of the error's square, the pixels being a sample of many;
-    of_references: of that the references' own noise alone, which is what these pixels' error is unknown by."""
+    """error and bias: relative to `mean`. doubt: standard error of the squared error, with the
+    pixels as a sample of many. of_references: the part of this that is caused by the references'
+    noise, the uncertainty for exactly these pixels."""
 
     def __init__(self, error, doubt, of_references, bias, mean):
         self.error, self.doubt, self.of_references, self.bias, self.mean = error, doubt, of_references, bias, mean
 
 
-BRIGHT = 4.0  # times the mean: above, an error counts in proportion (raytrace/frame/frame.h, error_weight)
+BRIGHT = 4.0  # times the mean, for error_weight (raytrace/frame/frame.h)
 
 
 def compare(values, first, second, counts=None, more=()):
-    """The error of values, where first, second and perhaps more are references of the same, over those that count, relative to
-    their mean, with the program's weights: a value L brighter than 4 times the mean counts with w = 4 mean / L, in both
-    factors. L is the references' mean, so that what is judged has no say in it. Of more than two, the mean over all pairs:
-    of k differences d, ((sum d)^2 - sum d^2) / (k (k - 1)). What pixels' references have in common (patches) would make
-    of_references too small."""
+    """Error of values against two or more references, over the values that count, relative to their
+    mean. The program's weights apply: a value L brighter than 4 times the mean has w = 4 mean / L
+    in both factors. L is the mean of the references, so that the tested values do not affect it. Of
+    more than two references, the mean over all pairs: of k differences d,
+    ((sum d)^2 - sum d^2) / (k (k - 1)). Errors common to neighbouring pixels of the references
+    (patches) make of_references too small."""
     if counts is None:
         counts = [1.0] * len(values)
     k = 2 + len(more)
@@ -56,8 +58,8 @@ def compare(values, first, second, counts=None, more=()):
     variances = [max(0.0, sum((v - one)**2 for one in all_of) - k * (v - middle)**2) / (k - 1) for v, middle, all_of in rows]
     products = [w * ((v - middle)**2 - variance / k) for w, variance, (v, middle, _) in zip(factors, variances, rows)]
     noise = sum(w**2 * variance_of_product([v - one for one in all_of]) for w, (v, _, all_of) in zip(factors, rows))
-    # Of a single outlier it finds none: no less than normal noise s has by itself, 2 s^4 / (k (k - 1)), the mean of whose
-    # estimate s^4 is 1 + 2 / (k - 1) times too large.
+    # A single outlier gives zero variance. The minimum is the value of normal noise s,
+    # 2 s^4 / (k (k - 1)); the mean of its estimate s^4 is 1 + 2 / (k - 1) times too large.
     noise = max(noise, sum(w**2 * variance**2 for w, variance in zip(factors, variances)) * 2 / (k * (k + 1)))
     square = sum(products) / len(rows)
     spread = sum((p - square)**2 for p in products) / len(rows)**2
@@ -66,9 +68,10 @@ def compare(values, first, second, counts=None, more=()):
 
 
 def variance_of_product(differences):
-    """Of U, the mean product of two of them, found without bias: U^2 less the mean product of four, which is d^4 on the average,
-    by power sums. Of fewer than four, which tell no such, 2 m^2 s^2, m their mean and s^2 their variance: d^2 s^2 more than a
-    pair has if they are normal, so that it is seldom too small."""
+    """Unbiased variance of U, the mean product of two: U^2 minus the mean product of four, which is
+    d^4 on average, by power sums. With fewer than four, which have no such product, 2 m^2 s^2, m
+    their mean and s^2 their variance: for normal noise d^2 s^2 more than the value of a pair, so
+    that it is rarely too small."""
     k = len(differences)
     p1, p2, p3, p4 = (sum(d**n for d in differences) for n in (1, 2, 3, 4))
     if k < 4:
@@ -82,7 +85,8 @@ def weight(luminance, mean):
 
 
 def radiosities(reader, scene, solutions, points=16384):
-    """Of each of the solutions (words of tests/validation/surfaces.cpp) the radiosity at the same points, spread by area."""
+    """Radiosity of each solution (arguments of tests/validation/surfaces.cpp) at the same points,
+    uniform in area."""
     words = [word for one in solutions for word in ["--", *one]][1:]
     run = subprocess.run([reader, scene, str(points), *map(str, words)], capture_output=True, text=True)
     if run.returncode != 0:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Thin gaps, far pairs, tiny against huge, shared edges at sharp and flat angles.
+// Thin gaps, distant pairs, tiny and huge patches, shared edges at sharp and flat angles.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace earthshine::validation {
 namespace {
 
 // Unit squares with a common edge at an angle (Howell C-16), by Gauss's rule of 3 points on 4000
-// intervals on either side of the kink at p = pi / 4.
+// intervals on each side of the kink at p = pi / 4.
 double inclined_squares(double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   const auto integrand = [c](double p) {
@@ -43,7 +43,7 @@ void row(Verdict& verdict, const std::string& what, tests::Case& c, double exact
              found.computed, found.std_error, found.error(c) / found.std_error, by_exact);
   verdict.check(std::abs(by_exact) <= 1e-6,
                 fmt::format("{}: {:.3e} off by the exact method", what, by_exact));
-  // By the value itself where it is tiny: rounding of 1e-8 would pass anything there.
+  // Relative to the value, because it may be tiny: an absolute 1e-8 would pass everything then.
   verdict.check(
       std::abs(found.error(c)) <= 4.0 * found.std_error + 1e-8 * exact,
       fmt::format("{}: {:.3e} off, standard error {:.1e}", what, found.error(c), found.std_error));
@@ -72,8 +72,8 @@ void facing(const std::string& what, double first, double second, double h, int 
   c.to = c.made.object("second", m);
   c.made.level(-b, b, -b, b, h, false, 4, 4);
   c.rays = rays;
-  // The closed form's differences lose digits where one square is tiny: there the factor from the
-  // point under its middle is exact to the square of their ratio.
+  // The closed form suffers from cancellation if one square is tiny. There the factor from the
+  // point under its centre is exact to the square of their ratio.
   double exact = 0.0;
   const double ratio = std::min(first, second) / std::max(first, second);
   if (ratio < 0.1) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes that are likely to fool an error estimate, with what is known about each."""
+"""Scenes on which an error estimate may fail, with known results."""
 import dataclasses
 import math
 
@@ -9,13 +9,14 @@ from error_scenes import Text, wall
 @dataclasses.dataclass
 class Hard:
     name: str
-    why: str  # what makes it hard
+    why: str  # the difficulty
     text: str
-    # Mean illuminance (lx) of all surface, where it is known: in closed rooms of even reflectance, by conservation.
+    # Mean illuminance (lx) of all surfaces, if known: in closed rooms of uniform reflectance, by
+    # conservation.
     mean: float | None = None
     light: float | None = None  # of every pixel, cd/m2
     target: str | None = None
-    traced: str | None = None  # what a path tracer is asked in its place, if that finds some of the light by no chance
+    traced: str | None = None  # scene for the path tracer if paths cannot find some of the light
 
 
 def closed(text, low, high, material):
@@ -31,9 +32,10 @@ def quad(axis, at, low, high, turned=False):
 
 
 def small_emitter():
-    """A room of 4 x 4 x 3 m, 80 m2, of reflectance 0.5, and 4 cm2 that shine with 400 lm: one ray of a patch in some 200 000.
-    Shadow rays find it. Its own 4 cm2 of another reflectance are 5e-6 of the surface.
-    Conservation: what lands, area E, is flux + rho area E: E = flux / (area (1 - rho)) in the mean."""
+    """A room of 4 x 4 x 3 m, 80 m2, of reflectance 0.5, and 4 cm2 that emit 400 lm: about one in
+    200 000 rays of a patch hits them. Shadow rays find them. The different reflectance of the 4 cm2
+    is 5e-6 of the surface. Conservation: the landed light is area E = flux + rho area E, hence E =
+    flux / (area (1 - rho)) on average."""
     text = Text("small emitter")
     closed(text, (0, 0, 0), (4, 4, 3), text.material(diffuse=0.5))
     text.thing(text.material(diffuse=0.5, emit=1e6), **quad(2, 2.9, (1, 1, 0), (1.02, 1.02, 0), True))
@@ -42,8 +44,9 @@ def small_emitter():
 
 
 def sun_spot():
-    """A room with a hole of 10 x 10 cm in the ceiling: the Sun, straight above, puts 1000 lm on a spot of the floor, which lights
-    everything else. Of reflectance 0.6 the 79.99 m2 give back what they get but for 1 - rho and the hole's share."""
+    """A room with a hole of 10 x 10 cm in the ceiling. The vertical Sun puts 1000 lm on a spot of
+    the floor, which lights everything else. The 79.99 m2 have the reflectance 0.6 and reflect all
+    light except 1 - rho and the share of the hole."""
     text = Text("sun spot")
     paint = text.material(diffuse=0.6)
     low, high = (0, 0, 0), (4, 4, 3)
@@ -59,7 +62,7 @@ def sun_spot():
 
 
 def wide_emitter():
-    """A closed room half a metre high, whose emitter is just wide enough that form factors carry its light."""
+    """A closed room half a metre high; its emitter is just large enough for form factors."""
     text = Text("carried emitter")
     closed(text, (0, 0, 0), (2, 2, 0.5), text.material(diffuse=0.5))
     edge = math.sqrt(0.06 * 12)
@@ -69,7 +72,8 @@ def wide_emitter():
 
 
 def pinhole():
-    """Two rooms of 2 m with a wall between; the lamp is in the one, the camera in the other, and a hole of 6 cm in the wall."""
+    """Two rooms of 2 m with a wall between them. The lamp is in one, the camera in the other, and
+    the wall has a hole of 6 cm."""
     text = Text("pinhole")
     paint = text.material(diffuse=0.7)
     sheet = text.material(diffuse=0.7, two_sided=True)
@@ -82,7 +86,8 @@ def pinhole():
 
 
 def baffle():
-    """The lamp hides behind a sheet below the ceiling: what the camera sees is lit by the ceiling alone."""
+    """The lamp is hidden by a sheet below the ceiling: visible surfaces are lit by the ceiling
+    only."""
     text = Text("baffle")
     closed(text, (0, 0, 0), (4, 4, 3), text.material(diffuse=0.6))
     text.thing(text.material(diffuse=0.6, two_sided=True), **quad(2, 2.5, (0.5, 0.5, 0), (3.5, 3.5, 0)))
@@ -92,7 +97,8 @@ def baffle():
 
 
 def shadowed_target():
-    """A box in the full shadow of a roof, beside a floor in the Sun: it is lit by what the floor reflects to the roof's underside."""
+    """A box in the full shadow of a roof, beside a sunlit floor: its light is reflected by the
+    floor to the underside of the roof."""
     text = Text("shadowed target")
     text.thing(text.material(diffuse=0.5), **quad(2, 0, (-3, -3, 0), (3, 3, 0)))
     text.thing(text.material(diffuse=0.1, two_sided=True), **quad(2, 0.8, (-1.2, -1.2, 0), (1.2, 1.2, 0)))
@@ -103,8 +109,8 @@ def shadowed_target():
 
 
 def caustic():
-    """A ball that mirrors sends the Sun's light all around, onto the floor too, which no strategy of the program carries. It must be
-    named. Of the light that falls on the ball it sends 0.9 on."""
+    """A mirror ball reflects sunlight in all directions, also onto the floor. No method of the
+    program carries this light; it must be named. The ball reflects 0.9 of its light."""
     text = Text("caustic")
     text.thing(text.material(diffuse=0.5), **quad(2, 0, (-2, -2, 0), (2, 2, 0)))
     text.thing(text.material(diffuse=0.0, mirror=0.9), shape="sphere", center=[0, 0, 1], radius=0.5)
@@ -114,7 +120,8 @@ def caustic():
 
 
 def white_room():
-    """Everything in a closed room of reflectance 0.99 that emits M = 1 has E = B = M / (1 - rho) = 100."""
+    """In a closed room of reflectance 0.99 that emits M = 1, E = B = M / (1 - rho) = 100
+    everywhere."""
     text = Text("white room")
     closed(text, (0, 0, 0), (2, 2, 2), text.material(diffuse=0.99, emit=1.0))
     look(text, (0.3, 0.3, 1.0), (1.5, 1.8, 0.8))
@@ -122,7 +129,8 @@ def white_room():
 
 
 def lit_white_room():
-    """The same with a lamp of 100 lm in place of the exitance: 24 m2, so that E = flux / (area (1 - rho)) in the mean."""
+    """The same room with a lamp of 100 lm instead of the exitance: 24 m2, hence E = flux / (area (1
+    - rho)) on average."""
     text = Text("lit white room")
     closed(text, (0, 0, 0), (2, 2, 2), text.material(diffuse=0.99))
     text.light(type="point", position=[1.2, 1.2, 1.5], flux=100.0)
@@ -131,9 +139,10 @@ def lit_white_room():
 
 
 def lamp_at_a_wall():
-    """A lamp 1 mm off a wall: half of its light lands on a spot of some millimetres, which lights the rest. With reflectance 0.6 of
-    24 m2 the mean illuminance is flux / (area (1 - rho)). No path finds the spot by chance: the path tracer gets a black
-    square of 5 cm in its place, and a disc that shines as the square would reflect."""
+    """A lamp 1 mm from a wall: half of its light lands on a spot of some millimetres, which lights
+    the room. With reflectance 0.6 of 24 m2 the mean illuminance is flux / (area (1 - rho)). Random
+    paths do not find the spot. The path tracer gets a black square of 5 cm instead, and a disc that
+    emits the light that the square would reflect."""
     half, distance, reflectance, flux = 0.025, 0.001 - 5e-5, 0.6, 1000.0
     seen_sr = 4 * math.atan(half**2 / (distance * math.sqrt(2 * half**2 + distance**2)))
 
@@ -154,8 +163,9 @@ def lamp_at_a_wall():
 
 
 def corridor():
-    """Twenty rooms of 2 m in a row, doors of 0.8 x 1.6 m between them at alternate sides; the lamp is in the first, the camera in the
-    last but sixteen. Light falls by some ten times a room."""
+    """Twenty rooms of 2 m in a row, with doors of 0.8 x 1.6 m at alternating sides. The lamp is in
+    the first room, the camera in the last but sixteen. Light falls by about a factor of ten per
+    room."""
     text = Text("corridor")
     paint = text.material(diffuse=0.7)
     sheet = text.material(diffuse=0.7, two_sided=True)
@@ -170,7 +180,7 @@ def corridor():
 
 
 def black_picture():
-    """Surfaces that reflect a ten-thousandth of little."""
+    """Nearly black surfaces that reflect a ten-thousandth of little light."""
     text = Text("black picture")
     closed(text, (0, 0, 0), (2, 2, 2), text.material(diffuse=1e-4))
     text.light(type="point", position=[1.2, 1.2, 1.9], flux=1e-6)

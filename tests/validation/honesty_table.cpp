@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether standard errors are honest: the mean square of error over standard error, over seeds.
+// Accuracy of standard errors: mean square of error over standard error, over seeds.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -50,7 +50,7 @@ void object_rows(const Options& options, Verdict& verdict) {
             tests::run_case(c, tests::object_factors_by_rays, std::uint64_t(seed));
         t.add(found.error(c) / found.std_error);
       }
-      // Every standard error has 50 degrees of freedom or more: up to 4 % more.
+      // Every standard error has at least 50 degrees of freedom, which adds at most 4 %.
       row(verdict, fmt::format("object to object, `{}`, {} rays", name, c.rays), t, t.count, 0.04);
     }
   }
@@ -82,7 +82,7 @@ void entry_rows(const Options& options, Verdict& verdict) {
         rows.add(std::sqrt(square) / radiosity::row_std_error(law, f, i));
       }
     }
-    // The law itself is known to a few per cent; entries of a row depend on each other.
+    // The law is accurate to a few per cent; entries of a row are correlated.
     row(verdict, fmt::format("entries of 4 hits or more, cube 6 x 8 x 8, {} rays", rays), entries,
         entries.count, 0.1);
     row(verdict, fmt::format("rows (root of the summed squares), {} rays", rays), rows, rows.count,

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the materials of files become, beside what their own models say: the table of docs/data/materials.md.
+"""Materials of mesh files against their models: the table of docs/data/materials.md.
 
 usage: EARTHSHINE_PROGRAM=build/release/earthshine material_maps.py
 
-A plate lies in the light of a point Sun that stands over it; cameras look at its middle at angles to the normal. A
-reflectance factor is pi L / E, measured in pictures of the program, and computed from the formulas of glTF 2.0
-(appendix B) and of the MTL format (illum 2).
+A plate lies under a vertical point-like Sun; cameras view its centre at angles to the normal. A
+reflectance factor is pi L / E, measured in pictures of the program, and computed from the formulas
+of glTF 2.0 (appendix B) and of the MTL format (illum 2).
 """
 import math
 import os
@@ -51,7 +51,7 @@ def scene(mesh):
 
 
 def measured(program, folder, mesh):
-    """Reflectance factors at ANGLES of the green channel."""
+    """Reflectance factors of the green channel at ANGLES."""
     (folder / "plate.toml").write_text(scene(mesh), encoding="utf-8")
     factors = []
     for angle in ANGLES:
@@ -82,7 +82,7 @@ def gltf(base, metallic, roughness, f0=0.04):
 
 
 def mtl(diffuse, specular, exponent):
-    """illum 2: Kd (N L) + Ks (N H)^Ns, H half way between light and viewer."""
+    """illum 2: Kd (N L) + Ks (N H)^Ns, H the half vector of light and viewer."""
     return [diffuse + specular * math.cos(math.radians(angle / 2)) ** exponent for angle in ANGLES]
 
 
@@ -100,7 +100,7 @@ def mtl_file(diffuse, specular, exponent):
             "plate.mtl": f"newmtl paint\nKd {diffuse}\nKs {specular}\nNs {exponent}\nillum 2\n".encode()}
 
 
-# Name, files (the first is the mesh), the model's own factors.
+# Name, files (the first is the mesh), factors of the model.
 CASES = [(f"glTF, metallic {m:g}, base {b:g}, roughness {r:g}", gltf_file(b, m, r), gltf(b, m, r))
          for b, m, r in [(0.5, 0, 1.0), (0.5, 0, 0.5), (0.5, 0, 0.3), (0.9, 1, 1.0), (0.9, 1, 0.5), (0.9, 1, 0.3),
                          (0.5, 0.5, 0.5)]] + [
@@ -109,7 +109,7 @@ CASES = [(f"glTF, metallic {m:g}, base {b:g}, roughness {r:g}", gltf_file(b, m, 
 
 
 def rows(program):
-    """(name, measured, the model's own) of each case."""
+    """(name, measured, model) of each case."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         for name, files, own in CASES:

@@ -1,23 +1,27 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The Phong lobes of glTF's metals: the table of scenes/reflect/ggx_lobes.cpp, and how well its albedos agree.
+"""Phong lobes of glTF metals: the table of scenes/reflect/ggx_lobes.cpp, and errors of albedos.
 
 usage: metal_lobes.py
 
-For each roughness r, with a = r^2 and facets that reflect all light: a diffuse part d, a peak p and an exponent n so
-that light which is spread evenly over the hemisphere is reflected as by GGX (glTF 2.0, B.3, single scattering),
+For each roughness r, with a = r^2 and facets that reflect all light: a diffuse part d, a peak p and
+an exponent n with three conditions. Uniform light over the hemisphere is reflected as by GGX (glTF
+2.0, B.3, single scattering),
   d + p M(n) = G,
-that along the normal the peak is GGX's, d + p = 1 / (4 a^2), and that the tail is: light along the normal, seen
-60 degrees off it. M is of the even lobe, cos^n alpha / max(cos in, cos out). Rough metals are brighter off the normal
-than along it, which no lobe about the mirror direction is: where the tail is above the peak, p is 0 and d = G. No light is
-made: of light along the normal no more than all comes back, d + 2 p / (n + 2) <= 1.
+with M of the symmetric lobe, cos^n alpha / max(cos in, cos out). The peak along the normal is that
+of GGX, d + p = 1 / (4 a^2). The tail is that of GGX: light along the normal, seen 60 degrees off
+it.
+
+Rough metals are brighter off the normal than along it, which no lobe about the mirror direction can
+represent: if the tail is above the peak, p is 0 and d = G. No light is created: for light along the
+normal, d + 2 p / (n + 2) <= 1.
 """
 import math
 
 STEPS = [0.05, 0.075, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9,
          0.95, 1.0]
 ANGLES = (0, 20, 40, 60, 70, 80)
-LEAST = 4.0  # exponent: wider lobes end at the horizon with an edge that can be seen
+LEAST = 4.0  # exponent; wider lobes have a visible edge at the horizon
 
 
 def midpoints(count):
@@ -25,7 +29,8 @@ def midpoints(count):
 
 
 def ggx_albedo(a, angle):
-    """Integral of f cos over the directions out, by the facets' normals h: D G1 G1 (i h) / cos_i dh."""
+    """Integral of f cos over the directions out, by the facet normals h: D G1 G1 (i h) / cos_i dh.
+    """
     ci, si = math.cos(angle), math.sin(angle)
     a2 = a * a
 
@@ -51,7 +56,7 @@ def ggx_albedo(a, angle):
 
 
 def lobe_albedo(n, angle):
-    """The same of cos^n alpha / max(cos in, cos out) / pi."""
+    """The same for cos^n alpha / max(cos in, cos out) / pi."""
     ci, si = math.cos(angle), math.sin(angle)
     turns = [math.cos(math.pi * x) for x in midpoints(32)]
     total = 0.0
@@ -66,7 +71,7 @@ def lobe_albedo(n, angle):
 
 
 def even_light(albedo):
-    """The mean over light from all over the hemisphere."""
+    """Mean over light from the whole hemisphere."""
     return sum(albedo(math.acos(math.sqrt(1 - x))) for x in midpoints(16)) / 16
 
 
@@ -95,7 +100,7 @@ def lobe(r):
         too_much = d + p * even_light(lambda angle: lobe_albedo(n, angle)) > whole or d + 2 * p / (n + 2) > 1
         low, high = (math.log(n), high) if too_much else (low, math.log(n))
     d, p = parts(n)
-    # Where the least exponent holds too much light, or too little, the diffuse part gives way.
+    # If the least exponent gives too much or too little light, the diffuse part is adjusted.
     if n < LEAST * 1.001:
         d = whole - p * even_light(lambda angle: lobe_albedo(n, angle))
     return d, p, n

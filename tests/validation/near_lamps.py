@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Point lamps so near to a floor that their spot of light is narrower than a pixel: the mean of a picture over the exact one.
+"""Point lamps close to a floor, with spots of light narrower than a pixel: mean of a picture over
+the exact mean.
 
 usage: near_lamps.py PROGRAM
 
-A lamp of intensity I sends I W onto what fills the solid angle W as it sees it, so that a picture straight from above, of the
-area A of a floor of reflectance rho, has the mean rho I W / (pi A). A rectangle from its foot at the height h:
-W = sum of +- atan(a b / (h sqrt(a^2 + b^2 + h^2))) over its corners (a, b).
+A lamp of intensity I sends the flux I W into the solid angle W. A vertical picture of the area A of
+a floor of reflectance rho therefore has the mean rho I W / (pi A). A rectangle below the lamp at
+distance h has
+  W = sum of +- atan(a b / (h sqrt(a^2 + b^2 + h^2))) over its corners (a, b).
 """
 import math
 import pathlib
@@ -56,7 +58,7 @@ def drawn_mean(program, folder, height, seed):
                                                     field=FIELD_DEG, edge=EDGE_PX))
     run = subprocess.run([program, "render", folder / "scene.toml", "--error", "0.05", "--seed", str(seed), "-q", "-o",
                           folder / "picture.exr"], check=False)
-    if run.returncode not in (0, 3):  # 3: short of the wanted error
+    if run.returncode not in (0, 3):  # 3: wanted error not reached
         sys.exit(run.returncode)
     values = error_truth.picture(folder / "picture.exr")[0]
     return sum(values) / len(values)

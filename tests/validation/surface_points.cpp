@@ -10,8 +10,8 @@
 namespace earthshine::validation {
 namespace {
 
-// Numbers 0 .. weights.size() - 1, `count` of them, in expectation count * weight / sum times each
-// (systematic sampling). None if all weights are 0.
+// Systematic sampling of `count` indices 0 .. weights.size() - 1: each is chosen count * weight /
+// sum times on average. Empty if all weights are 0.
 std::vector<std::size_t> spread_by_weight(std::span<const double> weights, std::size_t count,
                                           std::uint64_t seed) {
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
@@ -58,7 +58,7 @@ std::vector<scenes::Hit> spread_over_surfaces(const scenes::Scene& scene, std::s
 
 std::vector<double> radiosity_at(const scenes::RayQuery& query, const radiosity::Solution& solution,
                                  const std::vector<scenes::Hit>& where) {
-  if (solution.columns == 0) return std::vector<double>(where.size(), 0.0);  // nothing shines
+  if (solution.columns == 0) return std::vector<double>(where.size(), 0.0);  // no light
   const raytrace::LeakMask sight(query, solution.patches);
   const raytrace::RadianceTable table(solution, solution.radiosity, false, sight);
   std::vector<double> values;

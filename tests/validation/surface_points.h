@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The radiosity of surfaces at points of them.
+// Radiosity at points on surfaces.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace earthshine::validation {
 
-// Points spread over the surfaces by area, sheets on both sides: `count` of them.
+// `count` points, uniform in area over all surfaces; sheets on both sides.
 [[nodiscard]] std::vector<scenes::Hit> spread_over_surfaces(const scenes::Scene& scene,
                                                             std::size_t count, std::uint64_t seed);
-// Luminance of the radiosity there, lm/m^2, interpolated as pictures read it.
+// Luminance of the radiosity, lm/m^2, interpolated as in pictures.
 [[nodiscard]] std::vector<double> radiosity_at(const scenes::RayQuery& query,
                                                const radiosity::Solution& solution,
                                                const std::vector<scenes::Hit>& where);

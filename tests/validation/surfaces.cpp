@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Radiosity at the same points of several stored solutions of one scene, for error_truth.py:
 //   earthshine_surfaces SCENE POINTS {FILE.h5 SEED KEY=VALUE...} -- {FILE.h5 SEED KEY=VALUE...} ...
-// SEED and KEY=VALUE (scene overrides) as they were given to "solve". A line per point that no body
-// covers: luminances.
+// SEED and KEY=VALUE (scene overrides) as given to "solve". Prints a line of luminances per
+// uncovered point.
 #include <fmt/format.h>
 
 #include <exception>
@@ -29,7 +29,7 @@ radiosity::Solution read(const std::string& path, const std::vector<std::string>
       words[1], {scene, scenes::find_light_groups(scene), options, EARTHSHINE_VERSION});
 }
 
-// Those of the points that light can reach.
+// The points outside all bodies.
 std::vector<scenes::Hit> open_points(const scenes::Scene& scene, const scenes::RayQuery& query,
                                      const std::vector<scenes::Hit>& all) {
   const radiosity::ClosedBodies bodies(scene, query.centre());
@@ -47,7 +47,7 @@ std::vector<scenes::Hit> open_points(const scenes::Scene& scene, const scenes::R
 }
 
 void print(const std::vector<std::string>& arguments) {
-  constexpr std::uint64_t seed = 20261121;  // not one that the program is called with
+  constexpr std::uint64_t seed = 20261121;  // differs from all seeds in use
   const std::string& path = arguments.at(0);
   const scenes::Scene scene = scenes::read_scene(path);
   const scenes::RayQuery query(scene);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables of the validation program. Each prints itself as Markdown on standard output and
-// holds what it found against its gates.
+// Tables of the validation program. Each prints Markdown to standard output and checks its results
+// against its gates.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,10 @@ namespace earthshine::validation {
 
 struct Options {
   bool quick = false;  // fewer seeds and rays, under a minute
-  bool cost = false;   // the cost tables and no others: minutes, and gigabytes
+  bool cost = false;   // only the cost tables: minutes, and gigabytes
   std::uint64_t seed = 1;
-  std::string only;  // tables whose heading starts so, or else cases of the library whose name does
+  std::string only;  // tables whose heading has this prefix, else cases of the library whose name
+                     // has it
 };
 
 struct Verdict {

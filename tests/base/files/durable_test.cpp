@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a loss of power leaves: the order in which bytes, names and folders reach the disk. The
-// calls below stand in for those of the C library in this program.
+// Order in which bytes, names and folders reach the disk, which decides the state after a power
+// failure. The functions below replace those of the C library in this program.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture within files of other programs, and files that are broken in thousands of ways.
+// Pictures in files of other programs, and thousands of broken files.
 #include "base/files/exr_reader.h"
 
 #include <ImfChannelList.h>
@@ -41,7 +41,7 @@ std::vector<float> ramp() {
   return values;
 }
 
-// One channel Y of the ramp, as scan lines or as tiles.
+// One channel Y of the ramp, in scan lines or in tiles.
 void write_ramp(const std::filesystem::path& path, Imf::Compression compression, bool tiled,
                 Imf::LineOrder order = Imf::INCREASING_Y) {
   Imf::Header header(width, height);
@@ -63,7 +63,7 @@ void write_ramp(const std::filesystem::path& path, Imf::Compression compression,
   }
 }
 
-// Depth first, the picture in the second part.
+// Depth in the first part, the picture in the second.
 void write_parts(const std::filesystem::path& path) {
   std::vector<Imf::Header> headers;
   for (const char* name : {"depth", "beauty"}) {
@@ -84,7 +84,7 @@ void write_parts(const std::filesystem::path& path) {
   }
 }
 
-// Strips of any height, in any order, are the rows of the picture.
+// Strips of any height, in any order, have the rows of the picture.
 TEST(ExrReader, RowsAreTheSameInAnyStrips) {
   const TemporaryFolder folder;
   const auto check = [&](const char* what) {
@@ -116,8 +116,8 @@ TEST(ExrReader, RowsAreTheSameInAnyStrips) {
   check("second part");
 }
 
-// (1, 1, 1) is white in any primaries with the same white: R = G = B = 1 whatever they are, and a
-// primary of another set has the luminance and chromaticity that it says.
+// (1, 1, 1) is white for all primaries with the same white point: R = G = B = 1. A primary of
+// another set keeps its luminance and chromaticity.
 TEST(ExrReader, OtherPrimariesKeepTheirColour) {
   const TemporaryFolder folder;
   const Imf::Chromaticities p3({0.68F, 0.32F}, {0.265F, 0.69F}, {0.15F, 0.06F}, {0.3127F, 0.329F});
@@ -141,7 +141,7 @@ TEST(ExrReader, OtherPrimariesKeepTheirColour) {
   for (const Channel& channel : read({1, 1, 1}).channels) {
     EXPECT_NEAR(channel.values[0], 1.0F, 1e-4F) << channel.name;
   }
-  // Y of the green of P3 (D65) is 0.6917, that of red 0.2290.
+  // Y of the green of P3 (D65) is 0.6917, of its red 0.2290.
   EXPECT_NEAR(luminance_of(read({0, 1, 0}))[0], 0.6917F, 2e-4F);
   EXPECT_NEAR(luminance_of(read({1, 0, 0}))[0], 0.2290F, 2e-4F);
 }
@@ -158,7 +158,7 @@ TEST(ExrReader, PictureIsFoundByItsNames) {
   EXPECT_EQ(two.layers, (std::vector<std::string>{"a", "b"}));
 }
 
-// Hundreds of files with one to four bytes changed: a picture or one error, never a crash, an
+// Hundreds of files with one to four changed bytes: a picture or one error, never a crash, an
 // endless loop or another exception.
 TEST(ExrReader, BrokenBytesGiveAPictureOrAClearError) {
   const TemporaryFolder folder;
@@ -181,7 +181,7 @@ TEST(ExrReader, BrokenBytesGiveAPictureOrAClearError) {
   int pictures = 0, errors = 0;
   for (int round = 0; round < 600; ++round) {
     std::string bytes = files[static_cast<std::size_t>(round) % files.size()];
-    // Half of the changes fall into the header, where they do most.
+    // Half of the changes are in the header, where they have most effect.
     const std::size_t span = below(2) == 0 ? 400 : bytes.size();
     for (std::size_t n = 1 + below(4); n > 0; --n) {
       bytes[below(std::min(span, bytes.size()))] = static_cast<char>(below(256));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that other programs write, and files that no program should have written.
+// Files of other programs, and files that no program should write.
 #include <ImfChannelList.h>
 #include <ImfDeepScanLineOutputFile.h>
 #include <ImfFrameBuffer.h>
@@ -27,7 +27,7 @@ using test::read_bytes;
 using test::TemporaryFolder;
 using test::write_bytes;
 
-// 5 x 3 pixels of the values 1 to 15 in every channel.
+// 5 x 3 pixels with the values 1 to 15 in every channel.
 std::vector<float> counting() {
   std::vector<float> values(15);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i + 1);
@@ -132,7 +132,7 @@ TEST(ExrReading, FirstPartOfAMultiPartFileIsThePicture) {
 
 TEST(ExrReading, DeepSubsampledAndOversizedFilesAreRefusedByName) {
   const TemporaryFolder folder;
-  const auto header_only = [&](const Imf::Header& header) {  // the file is left without pixels
+  const auto header_only = [&](const Imf::Header& header) {  // the file has no pixels
     Imf::OutputFile file((folder / "a.exr").c_str(), header);
   };
   const auto message = [&] {

@@ -49,9 +49,9 @@ TEST(Exr, EveryBitOfEveryChannelComesBack) {
   }
 }
 
-// Halves keep 10 binary digits after the point, from 2^-14 on: what has no more of them comes back
-// bit for bit, what has is the nearest half, off by 2^-11 at most; the other channels stay as they
-// are.
+// Halves have 10 binary digits after the point, from 2^-14 on. Values that fit are read back bit
+// for bit; others become the nearest half, with a relative error of at most 2^-11. Other channels
+// are unchanged.
 TEST(Exr, NamedChannelsAreHalvesAndOthersAreNot) {
   const TemporaryFolder folder;
   Image image = pattern(37, 35);
@@ -117,7 +117,8 @@ TEST(Exr, APartOfAPictureSaysWhereItLies) {
   EXPECT_EQ(file.header().dataWindow(), Imath::Box2i({5, 3}, {8, 4}));
   const ExrFile back = read_exr(folder / "a.exr");
   ASSERT_EQ(back.image.width, 4);
-  const std::string first = part.channels.front().name;  // files have channels in order of names
+  const std::string first = part.channels.front().name;  // files have channels in alphabetical
+                                                         // order
   EXPECT_EQ(back.image.find(first)->values, part.channels.front().values);
 }
 
@@ -156,7 +157,7 @@ TEST(Exr, DepthMayBeInfiniteColourMayNot) {
 }
 
 TEST(Exr, FullDiskIsReportedAsFailedWork) {
-  for (const int edge : {1, 400}) {  // the small one fails only when its buffer is flushed
+  for (const int edge : {1, 400}) {  // the small one fails only at the flush of its buffer
     const std::string message =
         error_of(Blame::Work, [&] { write_exr("/dev/full", pattern(edge, edge)); });
     for (const char* part : {"No space left", "Free some space", "older file"}) {
@@ -176,7 +177,7 @@ TEST(Exr, FailureKeepsTheOldFileAndLeavesNoOther) {
   twice.channels[4].name = "R";
   error_of(Blame::Work, [&] { write_exr(folder / "a.exr", twice); });
   error_of(Blame::Work, [&] { write_exr(folder / "a.exr", Image{}); });
-  // An attribute that the library reserves, with another type.
+  // An attribute name that the library reserves, with another type.
   error_of(Blame::Work, [&] {
     write_exr(folder / "a.exr", pattern(8, 8), {{{"compression", "none"}}, {}});
   });
@@ -195,7 +196,7 @@ TEST(Exr, APictureBeyondTheMemoryAllowedIsNotRead) {
   {
     Image dark{6000, 6000, {}};
     dark.add("Y");
-    write_exr(folder / "a.exr", dark);  // 144 MB, next to nothing on the disk
+    write_exr(folder / "a.exr", dark);  // 144 MB, but hardly any space on disk
   }
   const MemoryLimit limit(std::uint64_t{120} << 20U);
   const std::string message = error_of(Blame::Work, [&] { (void)read_exr(folder / "a.exr"); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Data and display windows in every relation: both readers take the pixels that lie in both.
+// All relations of data and display window: both readers return the pixels in both windows.
 #include "base/files/exr_window.h"
 
 #include <ImfChannelList.h>
@@ -22,7 +22,7 @@ using Box = Imath::Box2i;
 using test::error_of;
 using test::TemporaryFolder;
 
-// A pixel's value is its place in the plane in which both windows lie.
+// A pixel's value encodes its position in the plane of both windows.
 float value_at(int x, int y) { return static_cast<float>(1000 * y + x + 100000); }
 
 void write(const std::filesystem::path& path, const Box& data, const Box& display, bool tiled) {
@@ -63,7 +63,7 @@ struct Relation {
   bool crop;
 };
 
-// The display window is (0, 0) to (9, 7), and the same moved by (-30, 50).
+// The display window is (0, 0) to (9, 7), also moved by (-30, 50).
 const Box display({0, 0}, {9, 7});
 const Relation relations[] = {
     {"the same", {{0, 0}, {9, 7}}, {{0, 0}, {9, 7}}, false},
@@ -122,7 +122,7 @@ TEST(ExrWindow, WindowsWithoutACommonPixelAreRefused) {
   }
 }
 
-// A crop that is read and written again lies where it lay.
+// A crop that is read and written again keeps its position.
 TEST(ExrWindow, ACropStaysACrop) {
   const TemporaryFolder folder;
   write(folder / "a.exr", {{-4, 2}, {5, 6}}, display, false);
@@ -134,7 +134,7 @@ TEST(ExrWindow, ACropStaysACrop) {
   expect_picture(again.image, {{0, 2}, {5, 6}}, "written again");
 }
 
-// Overscan is not looked at, so that its pixels may be anything; those of the picture may not.
+// Pixels of the overscan are not checked; pixels of the picture are.
 TEST(ExrWindow, NotANumberInTheOverscanIsNoFault) {
   const TemporaryFolder folder;
   Image image{4, 3, {}};
@@ -153,7 +153,7 @@ TEST(ExrWindow, NotANumberInTheOverscanIsNoFault) {
   EXPECT_EQ(ExrReader(folder / "a.exr").read_rows(0, 2).find("Y")->values,
             (std::vector<float>{1, 2, 3, 1, 2, 3}));
   EXPECT_EQ(read_exr(folder / "a.exr").image.width, 3);
-  with_display({{1, 0}, {3, 2}});  // the pixel is the third of the picture's first row
+  with_display({{1, 0}, {3, 2}});  // the NaN is the third pixel of the picture's first row
   EXPECT_NE(error_of(Blame::Input,
                      [&] { static_cast<void>(ExrReader(folder / "a.exr").read_rows(0, 2)); })
                 .find("pixel (2, 0)"),

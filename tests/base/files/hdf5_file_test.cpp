@@ -19,7 +19,7 @@ void expect_in(const std::string& part, const std::string& text) {
   EXPECT_NE(text.find(part), std::string::npos) << text;
 }
 
-// Large enough to be packed, and small.
+// One data set large enough for compression, and small ones.
 std::string sample_file() {
   std::vector<float> ramp(6000);
   std::iota(ramp.begin(), ramp.end(), 0.5F);
@@ -63,7 +63,7 @@ TEST(Hdf5File, WhatIsWrittenIsRead) {
 
 TEST(Hdf5File, TheSameCallsGiveTheSameBytes) {
   const std::string once = sample_file();
-  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5 keeps times in seconds
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5 stores times in seconds
   EXPECT_EQ(sample_file(), once);
 }
 
@@ -113,7 +113,7 @@ TEST(Hdf5File, ASealOverSomethingElseIsAnErrorToo) {
   }
 }
 
-// What no Hdf5Writer makes: `make` adds to a file that is then sealed.
+// A file that no Hdf5Writer makes: `make` adds to it before it gets a seal.
 template <class Make>
 std::string foreign_file(const test::TemporaryFolder& folder, Make make) {
   const std::string path = folder / "foreign.h5";

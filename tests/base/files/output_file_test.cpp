@@ -73,7 +73,7 @@ TEST(OutputFile, FullDiskIsReportedAsFailedWork) {
 }
 
 TEST(OutputFile, FolderThatTakesNoFilesIsReportedAsFailedWork) {
-  // /proc refuses new files to everybody, the superuser included.
+  // /proc refuses new files to every user, also to root.
   error_of(Blame::Work, [] { write_text("/proc/earthshine-test.txt", "new"); });
 }
 
@@ -86,7 +86,7 @@ TEST(OutputFile, VeryLongNamesAreWritten) {
 
 TEST(OutputFile, WhatKilledProcessesLeftIsCleared) {
   const TemporaryFolder folder;
-  // No process has this number: Linux stops at 2^22.
+  // Linux has no process with this number: the limit is 2^22.
   for (const char* name : {".a.json.999999999-0.part", ".b.c.exr.999999999-12.part"}) {
     write_bytes(folder / name, "half");
   }
@@ -133,7 +133,7 @@ TEST(OutputFile, LocksThatOtherMachinesDoNotSeeAreTold) {
   EXPECT_TRUE(others_see_locks(mounts, 0, 50));
   EXPECT_FALSE(others_see_locks(mounts, 0, 51));
   EXPECT_FALSE(others_see_locks(mounts, 0, 52));
-  EXPECT_TRUE(others_see_locks(mounts, 0, 53));  // flock() goes by the server
+  EXPECT_TRUE(others_see_locks(mounts, 0, 53));  // the server handles flock()
   EXPECT_FALSE(others_see_locks(mounts, 9, 54));
 }
 

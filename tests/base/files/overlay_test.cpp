@@ -27,8 +27,8 @@ TEST(Overlay, LineThroughPixelCentresFillsThemAndOnlyThem) {
 }
 
 TEST(Overlay, LineHasItsWidthAtAnyPlaceAndAngle) {
-  // Area: length x width, and the two round ends, whose fall-off over a pixel's width about the
-  // radius makes an integral of pi (w^2/4 + 1/12). Sampling it at pixel centres costs some percent.
+  // Area: length x width plus the two round ends, whose fall-off over a pixel's width at the radius
+  // integrates to pi (w^2/4 + 1/12). Sampling at pixel centres has an error of some percent.
   constexpr double width = 3.0;
   for (double angle = 0.0; angle < 3.1; angle += 0.29) {
     const double dx = 40.0 * std::cos(angle), dy = 40.0 * std::sin(angle);

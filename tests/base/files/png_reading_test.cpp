@@ -23,8 +23,8 @@ struct Kind {
   int interlace;
 };
 
-// 5 x 3 pixels of that kind, byte k of the rows is 40 k + 7 (mod 256); palette: entry i is (i, 2 i,
-// 255 - i), of which entry 1 is half transparent.
+// 5 x 3 pixels of this kind. Byte k of the rows is 40 k + 7 (mod 256). Palette: entry i is (i, 2 i,
+// 255 - i), and entry 1 is half transparent.
 std::string encoded(const Kind& kind, int width = 5, int height = 3) {
   std::string bytes;
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
@@ -83,7 +83,8 @@ TEST(PngReading, RgbComesBackWithAndWithoutInterlace) {
 TEST(PngReading, GreyIsRepeatedAndSmallDepthsAreStretched) {
   const Picture8 eight = read({PNG_COLOR_TYPE_GRAY, 8, PNG_INTERLACE_NONE});
   for (int k = 0; k < 45; ++k) EXPECT_EQ(eight.rgb[static_cast<std::size_t>(k)], byte_at(k / 3));
-  // The first byte, 7 = 0000 0111, as one bit each: five black pixels; as two: 0, 0, 1, 3.
+  // The first byte is 7 = 0000 0111. In one bit per pixel: five black pixels. In two bits: 0, 0, 1,
+  // 3.
   const Picture8 one = read({PNG_COLOR_TYPE_GRAY, 1, PNG_INTERLACE_NONE});
   EXPECT_EQ(one.rgb[0], 0);
   const Picture8 two = read({PNG_COLOR_TYPE_GRAY, 2, PNG_INTERLACE_NONE});
@@ -92,7 +93,7 @@ TEST(PngReading, GreyIsRepeatedAndSmallDepthsAreStretched) {
 }
 
 TEST(PngReading, SixteenBitsAreRoundedToEight) {
-  // Big-endian pairs v; the nearest of v 255 / 65535, which libpng may miss by less than one.
+  // Big-endian pairs v: the nearest to v 255 / 65535, which libpng may miss by less than one.
   const Picture8 picture = read({PNG_COLOR_TYPE_RGB, 16, PNG_INTERLACE_ADAM7});
   for (int k = 0; k < 45; ++k) {
     const double exact = (byte_at(2 * k) * 256.0 + byte_at(2 * k + 1)) / 257.0;
@@ -108,8 +109,8 @@ TEST(PngReading, TransparencyLiesOnBlack) {
                   byte_at(4 * p + c) * byte_at(4 * p + 3) / 255.0, 0.51);
     }
   }
-  // Palette of 8 bits: byte k is the entry; no pixel is entry 1. Of 1 bit: 7 = 0000 0111 has
-  // entries 0 and 1 in the second byte, 47 = 0010 1111.
+  // Palette of 8 bits: byte k is the entry; no pixel has entry 1. Palette of 1 bit: 7 = 0000 0111
+  // has entries 0 and 1 in the second byte, 47 = 0010 1111.
   const Picture8 palette = read({PNG_COLOR_TYPE_PALETTE, 8, PNG_INTERLACE_NONE});
   EXPECT_EQ(palette.rgb[0], 7);
   EXPECT_EQ(palette.rgb[1], 14);
@@ -143,7 +144,8 @@ TEST(PngReading, EveryTruncationAndEveryFlippedByteIsOneClearErrorOrAPicture) {
     broken[at] = static_cast<char>(broken[at] ^ 0x55);
     write_bytes(path, broken);
     try {
-      EXPECT_EQ(read_png(path).rgb.size(), 45U);  // e.g. a flip in the name of an optional chunk
+      EXPECT_EQ(read_png(path).rgb.size(), 45U);  // e.g. a changed bit in the name of an optional
+                                                  // chunk
     } catch (const Error& error) {
       EXPECT_EQ(error.blame(), Blame::Input);
     }

@@ -21,7 +21,7 @@ std::string little_endian(std::uint32_t value) {
   return bytes;
 }
 
-// A sound picture, and the same with an attribute more at the head of its header.
+// A valid picture with an additional attribute at the start of its header.
 std::string picture_with(const TemporaryFolder& folder, const std::string& attribute) {
   Image image{8, 8, {}};
   image.add("Y");
@@ -51,11 +51,12 @@ TEST(ExrGuard, AnAttributeLargerThanTheFileIsRefusedByItsName) {
   }
 }
 
-// The library reads a float's four bytes, a list of channels to its empty name and as many letters
-// as each text of a vector says; then it goes on from there, not from where the attribute ends.
+// The library reads four bytes of a float, a list of channels up to the empty name, and each text
+// of a vector with its stated length. It continues from there, not from the end of the attribute.
 TEST(ExrGuard, AnAttributeThatIsNotAsLongAsItsTypeIsRefused) {
   const std::string hidden =
-      std::string("x\0string\0", 9) + little_endian(1800U << 20U);  // read as the next attribute
+      std::string("x\0string\0", 9) + little_endian(1800U << 20U);  // would be read as the next
+                                                                    // attribute
   const auto attribute = [](const std::string& type, const std::string& value) {
     return std::string("story\0", 6) + type + '\0' +
            little_endian(static_cast<std::uint32_t>(value.size())) + value;

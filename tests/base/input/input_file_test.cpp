@@ -23,7 +23,7 @@ TEST(InputFile, BytesArriveAsTheyAre) {
   EXPECT_EQ(read_input_file(folder / "a", 9, asked_at), bytes);
   write_bytes(folder / "empty", "");
   EXPECT_EQ(read_input_file(folder / "empty", 9, asked_at), "");
-  EXPECT_FALSE(read_input_file("/proc/self/status", 1 << 20, asked_at).empty());  // of size 0
+  EXPECT_FALSE(read_input_file("/proc/self/status", 1 << 20, asked_at).empty());  // reports size 0
 }
 
 TEST(InputFile, WhatIsNoFileOnDiskIsRefusedAtOnce) {
@@ -59,7 +59,8 @@ TEST(InputFile, MissingFoldersAndTooLargeAreNamedOnce) {
 TEST(InputFile, AFileBeyondTheMemoryAllowedIsNotRead) {
   const TemporaryFolder folder;
   write_bytes(folder / "a", "");
-  std::filesystem::resize_file(folder / "a", std::uintmax_t{400} << 20);  // without blocks
+  std::filesystem::resize_file(folder / "a", std::uintmax_t{400} << 20);  // sparse: no blocks on
+                                                                          // disk
   const MemoryLimit limit(std::uint64_t{100} << 20);
   const std::string message = error_of(
       Blame::Work, [&] { (void)read_input_file(folder / "a", std::size_t{1} << 30, asked_at); });

@@ -52,12 +52,12 @@ TEST(Random, NeighbouringItemsAreUncorrelated) {
     product += (uniform(Key(1, Stream::Test, n), 0) - 0.5) *
                (uniform(Key(1, Stream::Test, n + 1), 0) - 0.5);
   }
-  // Var of a product of independent uniforms about 1/2 is 1/144.
+  // The variance of a product of independent uniform numbers about 1/2 is 1/144.
   EXPECT_NEAR(product / draws, 0.0, 4.0 / 12.0 / std::sqrt(draws));
 }
 
-// A (0, m, s)-net in base 2: each of the 2^m boxes of any shape holds exactly one of 2^m points.
-// Dimensions 1 and 2 of Sobol are one, and Owen scrambling keeps it.
+// A (0, m, s)-net in base 2: each of the 2^m boxes of any shape contains exactly one of 2^m points.
+// The first two dimensions of Sobol form such a net, and Owen scrambling preserves it.
 TEST(Random, FirstTwoSobolDimensionsFillEveryElementaryBoxOnce) {
   constexpr int m = 8;
   const SobolOwen4 sobol(Key(5, Stream::Test, 9));
@@ -74,7 +74,7 @@ TEST(Random, FirstTwoSobolDimensionsFillEveryElementaryBoxOnce) {
 }
 
 TEST(Random, TheSobolSetIsANetInEachPairOfItsDimensionsThatSobolMakesOne) {
-  // Elementary boxes of the first two dimensions, as above, and each single dimension's strata.
+  // Elementary boxes of the first two dimensions, as above, and the strata of each dimension.
   constexpr int m = 8;
   const SobolSet4 set(1U << m);
   const SobolSet4::Scramble scramble(Key(5, Stream::Test, 9));

@@ -37,7 +37,7 @@ TEST(Pixels, JpegComesAsItWasWritten) {
   const auto at = [&](int x, int y, int c) {
     return int{pixels.rgba[std::size_t(4 * (16 * y + x) + c)]};
   };
-  // Quality 95: the colours of the two flat blocks are right to a few steps.
+  // Quality 95: the colours of the two flat blocks are accurate to a few steps.
   EXPECT_NEAR(at(2, 3, 0), 250, 4);
   EXPECT_NEAR(at(2, 3, 2), 10, 4);
   EXPECT_NEAR(at(13, 6, 0), 10, 4);
@@ -66,7 +66,7 @@ TEST(Pixels, BrokenPicturesAreRefused) {
   for (std::size_t cut = 2; cut < jpeg.size() - 2; cut += 37) {
     EXPECT_NE(refusal(jpeg.substr(0, cut)).find("broken JPEG"), std::string::npos) << cut;
   }
-  // Without the mark of its end alone: libjpeg warns once, and all pixels are there.
+  // Without the end marker only: libjpeg warns once, and all pixels are present.
   EXPECT_NE(refusal(jpeg.substr(0, jpeg.size() - 2)).find("cut short"), std::string::npos);
 }
 

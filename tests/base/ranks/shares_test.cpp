@@ -34,7 +34,8 @@ std::vector<Shares::Range> ranges(const std::vector<double>& cost, int ranks) {
 }
 
 TEST(Shares, RanksHaveAsMuchCostEachToWithinTheDearestItem) {
-  // Each end is off its place, k / R of the cost, by half of an item at most: a range by one.
+  // Each end differs from its ideal position, k / R of the cost, by at most half an item, and each
+  // range by at most one item.
   Rng rng(Key(20, Stream::Test, 0));
   std::vector<double> cost(1000);
   for (double& c : cost) c = 1.0 + 99.0 * rng.next() * rng.next();
@@ -43,7 +44,7 @@ TEST(Shares, RanksHaveAsMuchCostEachToWithinTheDearestItem) {
   for (const int count : {1, 2, 3, 5, 8, 64}) {
     std::size_t end = 0;
     for (const Shares::Range& range : ranges(cost, count)) {
-      EXPECT_EQ(range.begin, end);  // one after the other, none left out
+      EXPECT_EQ(range.begin, end);  // consecutive, without gaps
       end = range.end;
       const double held = std::accumulate(cost.begin() + static_cast<std::ptrdiff_t>(range.begin),
                                           cost.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
@@ -54,8 +55,8 @@ TEST(Shares, RanksHaveAsMuchCostEachToWithinTheDearestItem) {
 }
 
 TEST(Shares, RangesBeginAtMultiplesOfTheGrain) {
-  // 103 items of one cost in grains of 8, 12 whole ones and 7 items: each end is off its place, k /
-  // R of them, by half a grain at most.
+  // 103 items of equal cost in grains of 8: 12 whole grains and 7 items. Each end differs from its
+  // ideal position, k / R of the items, by at most half a grain.
   const std::vector<double> cost(103, 1.0);
   for (const int count : {2, 3, 5, 8, 64}) {
     std::size_t end = 0;
@@ -72,11 +73,11 @@ TEST(Shares, RangesBeginAtMultiplesOfTheGrain) {
   }
 }
 
-// One of some ranks of which each has the numbers 1 / (1 + k) for its items k.
+// One of several ranks; each has the numbers 1 / (1 + k) for its items k.
 class OneOfSome : public Silent {
  public:
   using Silent::Silent;
-  // The others' chunks: what they would have said is worked out.
+  // Checks this rank's chunks, then computes the chunks of the other ranks.
   void gather(void* items, std::size_t bytes_each, const std::vector<std::size_t>& start) override {
     ASSERT_EQ(bytes_each, 2 * sizeof(double));
     auto* const parts = static_cast<double*>(items);
@@ -101,8 +102,8 @@ class OneOfSome : public Silent {
 };
 
 TEST(Shares, OrderedSumsHaveTheSameBitsOnAnyNumberOfRanks) {
-  // 1 + 1/2 + ... + 1/1002 is rounded at every addition; adding it up from the other end, or
-  // without chunks, has another last digit.
+  // 1 + 1/2 + ... + 1/1002 is rounded at every addition. Adding in reverse order, or without
+  // chunks, changes the last digit.
   const auto sums = [](int rank, int count) {
     OneOfSome one(rank, count);
     const RanksInForce in_force(count > 1 ? &one : nullptr);
@@ -132,11 +133,11 @@ TEST(Shares, MoreRanksThanItemsLeaveSomeWithout) {
   }
 }
 
-// The second of two; the first has said what is given.
+// Rank 1 of two; rank 0 has sent a given string.
 class Second : public Silent {
  public:
   explicit Second(std::string said) : Silent(1, 2), said_(std::move(said)) {}
-  // Of the first what is given, after its size.
+  // Receives the given string of rank 0, after its size.
   void broadcast(void* first, std::size_t bytes, int from) override {
     if (from != 0) return;
     if (std::exchange(is_size_, !is_size_)) {
@@ -153,8 +154,9 @@ class Second : public Silent {
 };
 
 TEST(Shares, SumsThatAreRoundedAreTakenItemByItem) {
-  // The first rank's item is 1e16, whose neighbours in doubles are 2 apart: 1e16 + 1 + 1 = 1e16 in
-  // the order of the items, 1e16 + 2 if the second rank's were added up alone.
+  // The first rank's item is 1e16, where doubles have a spacing of 2. In the order of the items
+  // 1e16 + 1 + 1 = 1e16; if the second rank's items were added separately, the sum would be 1e16 +
+  // 2.
   const auto total = [](bool exact, double item = 1.0) {
     std::vector<double> first = {1e16};
     Parcel parcel;
@@ -180,7 +182,7 @@ TEST(Ranks, TheFirstAloneMakesFiles) {
     Silent silent(number, 2);
     const RanksInForce in_force(&silent);
     if (number == 1)
-      OutputFile(folder / "there" / "a").commit();  // what is not there it does not need
+      OutputFile(folder / "there" / "a").commit();  // it does not need the missing folder
     OutputFile file(folder / "a");
     const bool is_made = !std::filesystem::is_empty(folder.path());
     EXPECT_EQ(is_made, number == 0);

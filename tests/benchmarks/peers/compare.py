@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """CPU seconds to an error, Earthshine and Blender Cycles on the same scenes: `./dev peers`.
 
-Both programs render tests/data/peers at 256 x 256, whole processes, start and solution included;
-errors are against references made by two other path tracers (tests/data/README.md).
+Both programs render tests/data/peers at 256 x 256. Times are of whole processes, with start and
+solution. Errors are against references of two other path tracers (tests/data/README.md).
 """
 import argparse
 import json
@@ -22,7 +22,7 @@ sys.path[:0] = [str(HERE), str(TOP / "tests" / "cli")]
 import exr  # noqa: E402
 import measures  # noqa: E402
 
-# What is asked of each program: one list each, cheapest first.
+# Settings of each program, cheapest first.
 EARTHSHINE_ERRORS = [0.2, 0.1, 0.05, 0.02, 0.01, 0.005]
 CYCLES_SAMPLES = [16, 64, 256, 1024]
 QUICK_ERRORS = [0.2, 0.1, 0.05]
@@ -30,10 +30,10 @@ QUICK_SAMPLES = [16, 64]
 WANTED = [0.05, 0.02, 0.01]
 SEED = 1
 
-# The references' own noise, and the luminance above which a pixel is the lamp's. In the Cornell box
-# 0.5 gives the mean without lamp that was stated with the reference, 0.0623386; it leaves out every
-# pixel of which the lamp covers more than 1/25. Above 12.4 it fills the pixel. No lamp or sky is in
-# view in the other two.
+# Noise of the references, and the luminance above which a pixel shows the lamp. In the Cornell box
+# 0.5 gives the mean without lamp that was stated with the reference, 0.0623386. It excludes every
+# pixel of which the lamp covers more than 1/25; above 12.4 the lamp fills the pixel. The other two
+# scenes show no lamp or sky.
 SCENES = {
     "bay": {"noise": 0.0071, "lamp_above": math.inf, "whole_lamp_above": math.inf},
     "cornell": {"noise": 0.0107, "lamp_above": 0.5, "whole_lamp_above": 12.4},
@@ -48,7 +48,7 @@ def run(command):
         output = process.stdout.read()
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode not in (0, 3):  # 3: short of the wanted error
+    if process.returncode not in (0, 3):  # 3: wanted error not reached
         sys.exit(f"{' '.join(map(str, command))}\nended with code {process.returncode}:\n{output}")
     return usage.ru_utime + usage.ru_stime
 
@@ -94,7 +94,7 @@ class Scene:
 
 
 def measure(scene, name, command, program, settings, call):
-    """One row per setting. The pictures stay in the folder."""
+    """One row per setting. Leaves the pictures in the folder."""
     rows = []
     for setting in settings:
         picture = call.folder / f"{scene.name}-{name}-{setting}.exr"

@@ -4,9 +4,9 @@
     blender -b --factory-startup --python-exit-code 1 --python cycles_scene.py -- \\
         SCENE.toml OUT.exr SAMPLES SEED
 
-Reads the part of the format that the scenes of the comparison need: OBJ meshes by part, diffuse
-materials, emitting ones, the uniform Earth, one pinhole camera. Anything else is refused, so that
-the two programs never render different scenes.
+Reads the part of the format that the comparison needs: OBJ meshes by part, diffuse and emitting
+materials, the uniform Earth, one pinhole camera. Anything else is refused, so that the two programs
+never render different scenes.
 """
 import math
 import pathlib
@@ -36,7 +36,7 @@ def colour(value):
 
 
 def read_part(path, part):
-    """Vertices of the file and the polygons of every group of that name."""
+    """Vertices of the file, and the polygons of all groups of this name."""
     vertices, polygons, group = [], [], ""
     for line in path.read_text(encoding="utf-8").splitlines():
         words = line.split()
@@ -63,13 +63,13 @@ def make_material(table):
     if max(emit) > 0.0:
         if max(colour(table["diffuse"])) > 0.0:
             sys.exit(f"{table['name']}: emits and reflects, not known to the Cycles side")
-        # Cycles emits from both sides; the backs of these lamps look out of the rooms. `emit` is
-        # exitance, the shader wants radiance.
+        # Cycles emits from both sides; the backs of these lamps face out of the rooms. `emit` is
+        # exitance, the shader needs radiance.
         shader = nodes.new("ShaderNodeEmission")
         shader.inputs["Strength"].default_value = max(emit) / math.pi
         shader.inputs["Color"].default_value = [e / max(emit) for e in emit] + [1.0]
     else:
-        shader = nodes.new("ShaderNodeBsdfDiffuse")  # Lambert at roughness 0, alike on both sides
+        shader = nodes.new("ShaderNodeBsdfDiffuse")  # Lambert at roughness 0, equal on both sides
         shader.inputs["Color"].default_value = colour(table["diffuse"]) + [1.0]
         shader.inputs["Roughness"].default_value = 0.0
     links.new(shader.outputs[0], out.inputs["Surface"])
@@ -87,7 +87,7 @@ def make_objects(scene, folder):
 
 
 def make_world(earth):
-    """The Earth's disc: constant radiance within a cone. Black outside of it."""
+    """The Earth's disc: constant radiance within a cone, black outside."""
     world = bpy.data.worlds.new("sky")
     bpy.context.scene.world = world
     world.use_nodes = True
@@ -153,7 +153,7 @@ def set_up_render(resolution, out, samples, seed):
     cycles.use_denoising = False
     cycles.pixel_filter_type = "BOX"
     cycles.filter_width = 1.0
-    # Every bounce, as the reference has it, and nothing that trades bias for noise.
+    # All bounces, as in the reference, and no option that trades bias for noise.
     for bounces in ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces"):
         setattr(cycles, bounces, 1024)
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The figures of the comparison: error of a picture against a reference, seconds to an error."""
+"""Figures of the comparison: error of a picture against a reference, seconds to an error."""
 import math
 import struct
 
@@ -23,7 +23,7 @@ def luminance(red, green, blue):
 
 
 def widened(pixels, width, height):
-    """The pixels with the eight neighbours of each."""
+    """The pixels and the eight neighbours of each."""
     return {(x + dx) + width * (y + dy)
             for p in pixels for x, y in [(p % width, p // width)]
             for dx in (-1, 0, 1) for dy in (-1, 0, 1)
@@ -31,10 +31,10 @@ def widened(pixels, width, height):
 
 
 def error_of(values, reference, reference_noise, left_out=frozenset()):
-    """(error, bias) over the pixels that are not left out.
+    """(error, bias) over the pixels that are not excluded.
 
-    error: sqrt(mean (L - R)^2) / mean R, with the reference's own noise, given as the same ratio and
-    independent of the picture's, taken off quadratically. bias: mean L / mean R - 1.
+    error: sqrt(mean (L - R)^2) / mean R, minus the reference's noise in quadrature; this noise is
+    given as the same ratio and is independent of the picture's. bias: mean L / mean R - 1.
     """
     kept = [(v, r) for k, (v, r) in enumerate(zip(values, reference)) if k not in left_out]
     mean = sum(r for _, r in kept) / len(kept)
@@ -46,10 +46,10 @@ def error_of(values, reference, reference_noise, left_out=frozenset()):
 def seconds_to(series, wanted):
     """(seconds, how) to reach the error `wanted`; series: [(seconds, error, bias)].
 
-    how: "measured" between two settings, by a straight line in log-log; "at most" where the cheapest
-    setting is better already; "extrapolated" beyond the best setting, error as seconds^(-1/2), which
-    noise alone follows: "never" (seconds infinite) where the best setting's bias is larger than the
-    wanted error. Settings that cost more and gain nothing are not looked at.
+    how: "measured" between two settings, by a straight line in log-log. "at most" if the cheapest
+    setting is already better. "extrapolated" beyond the best setting, with error as seconds^(-1/2),
+    which holds for noise only. "never" (seconds infinite) if the best setting's bias is larger than
+    the wanted error. Settings that cost more without a smaller error are ignored.
     """
     best = []
     for row in sorted(series):

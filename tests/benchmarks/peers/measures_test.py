@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The figures of ./dev peers on pictures and series whose answers are known."""
+"""Figures of ./dev peers for pictures and series with known answers."""
 import math
 import pathlib
 import unittest
@@ -16,7 +16,7 @@ class ErrorOfAPicture(unittest.TestCase):
         self.assertAlmostEqual(bias, 0.1)
 
     def test_the_references_own_noise_is_taken_off_quadratically(self):
-        # Differences of 0.5 about a mean of 1; independent noise of 0.3 leaves sqrt(0.25 - 0.09).
+        # Differences of 0.5 about a mean of 1; minus independent noise of 0.3: sqrt(0.25 - 0.09).
         error, bias = measures.error_of([1.5, 0.5], [1.0, 1.0], 0.3)
         self.assertAlmostEqual(error, 0.4)
         self.assertAlmostEqual(bias, 0.0)
@@ -37,14 +37,14 @@ class ErrorOfAPicture(unittest.TestCase):
             self.assertAlmostEqual(sum(kept) / len(kept) / mean, 1.0, delta=1e-5)
 
     def test_the_first_row_of_a_picture_is_its_top(self):
-        # The Cornell box's lamp hangs from the ceiling.
+        # The Cornell box's lamp is at the ceiling.
         width, _, values = measures.read_pfm(PEERS / "cornell" / "reference-256.pfm")
         brightest = max(range(len(values)), key=lambda k: values[k])
         self.assertLess(brightest // width, 64)
 
 
 class SecondsToAnError(unittest.TestCase):
-    # Noise alone: error = 0.1 / sqrt(seconds).
+    # Pure noise: error = 0.1 / sqrt(seconds).
     SERIES = [(t, 0.1 / math.sqrt(t), 0.0) for t in (1.0, 4.0, 16.0)]
 
     def test_between_two_settings_a_power_law_is_met_exactly(self):

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Rough metals of glTF beside Blender Cycles: the mean of a picture of a ball in sunlight, by roughness and angle.
+"""Rough metals of glTF against Blender Cycles: mean of a picture of a sunlit ball.
 
 usage: EARTHSHINE_PROGRAM=build/release/earthshine metals.py [BLENDER]
 
-A ball of base colour 0.9 is lit by a Sun that stands at an angle to the camera's direction; black around. Cycles has the
-Glossy BSDF by single scattering (GGX) and by multiple scattering (MULTI_GGX), without Fresnel's law. Prints our mean over
-either. Runs itself inside of Blender for the other half.
+A ball of base colour 0.9, by roughness, is lit by a Sun at an angle to the camera's direction; the
+background is black. Cycles uses the Glossy BSDF with single scattering (GGX) and with multiple
+scattering (MULTI_GGX), without Fresnel. Prints the ratio of our mean to each. The Blender part of
+the script runs inside Blender.
 """
 import json
 import math
@@ -44,7 +45,7 @@ def ball():
 
 
 def sun(angle):
-    """Toward it; the camera is along +x."""
+    """Direction to the Sun; the camera is along +x."""
     return math.cos(math.radians(angle)), math.sin(math.radians(angle)), 0.0
 
 
@@ -110,7 +111,7 @@ def ours(program, folder):
         (folder / "ball.glb").write_bytes(model.glb())
         for angle in ANGLES:
             x, y, z = sun(angle)
-            # A Sun of strength 1 in Blender is 1 W/m^2 on a plane that faces it.
+            # A Sun of strength 1 in Blender gives 1 W/m^2 on a plane that faces it.
             (folder / "ball.toml").write_text(f"""format = 1
 [[object]]
 name = "ball"

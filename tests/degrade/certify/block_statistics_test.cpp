@@ -14,7 +14,7 @@ namespace {
 
 TEST(BlockStatistics, BlocksAreWholeAndClearOfTheBorder) {
   const std::vector<Block> blocks = cut_blocks(50, 33, 4, 10);
-  EXPECT_EQ(blocks.size(), 4U * 2U);  // 42 x 25 inside
+  EXPECT_EQ(blocks.size(), 4U * 2U);  // 42 x 25 inside the border
   for (const Block& block : blocks) {
     EXPECT_GE(block.x0, 4);
     EXPECT_GE(block.y0, 4);
@@ -31,7 +31,7 @@ TEST(BlockStatistics, MeanAndItsError) {
   EXPECT_DOUBLE_EQ(mean.error, std::sqrt(14.0 / 12.0));
 }
 
-// Two-sided quantiles of Student's t at the chance of four deviations, 6.334e-5.
+// Two-sided quantiles of Student's t at the probability of four deviations, 6.334e-5.
 TEST(BlockStatistics, FewBlocksWidenFourErrorsAsStudentsTDoes) {
   EXPECT_DOUBLE_EQ(four_errors({1.0, 0.5}), 2.0);
   constexpr std::pair<double, double> quantiles[] = {
@@ -41,15 +41,15 @@ TEST(BlockStatistics, FewBlocksWidenFourErrorsAsStudentsTDoes) {
   }
 }
 
-// Numerators exactly proportional to denominators leave no error.
+// Numerators exactly proportional to denominators have no error.
 TEST(BlockStatistics, ProportionalSumsHaveARatioWithoutError) {
   const Estimate ratio = ratio_of({2.0, 4.0, 10.0}, {1.0, 2.0, 5.0});
   EXPECT_DOUBLE_EQ(ratio.value, 2.0);
   EXPECT_DOUBLE_EQ(ratio.error, 0.0);
 }
 
-// Grain of sigma 1 makes the mean's error sqrt(sum over shifts of rho) = 2 sigma sqrt(pi) = 3.5
-// times that of independent resels; blocks see that.
+// Grain of sigma 1 increases the error of the mean by sqrt(sum over shifts of rho) = 2 sigma
+// sqrt(pi) = 3.5 compared with independent resels; blocks include this.
 TEST(BlockStatistics, ErrorsKnowThatGrainIsNotIndependent) {
   const Picture noise = add_read_noise(test::flat(400, 400, 0.0F), {.a = 1.0}, {});
   const AxisMap blur = gaussian_blur(400, 1.0);
@@ -64,7 +64,7 @@ TEST(BlockStatistics, ErrorsKnowThatGrainIsNotIndependent) {
     return mean_of(means).error;
   };
   const double count = 361.0 * 400.0;
-  // Blur leaves the mean's error as it was; the deviation is down by the same factor.
+  // Blur does not change the error of the mean; it reduces the deviation by the same factor.
   EXPECT_NEAR(error_of_mean(noise) * std::sqrt(count), 1.0, 4.0 / std::sqrt(2.0 * 361.0));
   EXPECT_NEAR(error_of_mean(grain) * std::sqrt(count), 1.0, 4.0 / std::sqrt(2.0 * 361.0) + 0.06);
 }
@@ -73,14 +73,15 @@ TEST(BlockStatistics, CorrelationOfAFieldWithItselfIsOneAndShiftedIsThatOfTheTap
   const Picture noise = add_read_noise(test::flat(200, 200, 0.0F), {.a = 1.0}, {});
   const std::vector<Block> blocks = cut_blocks(200, 200, 4, 12);
   EXPECT_DOUBLE_EQ(correlation(noise, noise, blocks).value, 1.0);
-  // Means of two neighbours: correlation 1/2.
+  // Means of two neighbours have the correlation 1/2.
   Picture pairs = noise;
   for (std::size_t i = 0; i + 1 < pairs.planes[0].size(); ++i) {
     pairs.planes[0][i] = 0.5F * (noise.planes[0][i] + noise.planes[0][i + 1]);
   }
   const Estimate next = correlation(pairs, pairs, blocks, 1, 0);
   EXPECT_NEAR(next.value, 0.5, 4.0 * next.error);
-  // Bartlett: variance (1 + 2 rho^2 - ...) / n, near 1/2 to 1 of an independent field's.
+  // Bartlett: variance (1 + 2 rho^2 - ...) / n, about 1/2 to 1 of the variance for an independent
+  // field.
   EXPECT_NEAR(next.error, 0.7 / 190.0, 0.35 / 190.0);
   const Estimate across = correlation(pairs, pairs, blocks, 0, 1);
   EXPECT_NEAR(across.value, 0.0, 4.0 * across.error);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The certificate must be able to fail. Each case wraps the chain in one mistake, most of them
-// found in published camera simulators, and names the row that has to see it. In the right chain
-// all these rows pass (certificate_test.cpp).
+// The certificate must detect errors. Each case wraps the chain in one error, most of them found in
+// published camera simulators, and names the row that must fail. All rows pass for the correct
+// chain (certificate_test.cpp).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -133,7 +133,7 @@ std::vector<Defect> defects() {
   };
 }
 
-// The group of the row, measured through the chain.
+// Rows of the group of `row`, measured through the chain.
 Rows measured_group(const std::string& row, const CertifyOptions& options) {
   static const std::vector<CertificateRow> right =
       certify(test::busy_camera(), test::small_screen()).rows;
@@ -165,7 +165,7 @@ TEST_P(CertificateDefects, AreSeenByTheirRow) {
 INSTANTIATE_TEST_SUITE_P(, CertificateDefects, testing::ValuesIn(defects()),
                          [](const auto& made) { return made.param.name; });
 
-// Behind a lag the skewness is not looked at, so the camera here has none.
+// The skewness is not tested with lag, so that this camera has none.
 TEST(CertificateDefect, NoiseCutOnOneSideIsSkew) {
   const Defect cut = linear("Cut", "", [](double s, std::size_t) { return std::min(s, 0.51); });
   CctvCamera camera = test::busy_camera();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Right cameras pass. That wrong ones fail stands in certificate_defects_test.cpp.
+// Correct cameras pass. certificate_defects_test.cpp tests that wrong ones fail.
 #include "degrade/certify/certificate.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using test::busy_camera;
 using test::find_row;
 using test::small_screen;
 
-// The seed is fixed; over other seeds a row of four standard errors fails once in 16000.
+// The seed is fixed; over all seeds a row of four standard errors fails once in 16000.
 void expect_passes(const CctvCamera& camera, const Monitor& monitor, std::string_view what) {
   const Certificate certificate = certify(camera, monitor, {.seed = 3});
   for (const CertificateRow& row : certificate.rows) {
@@ -35,13 +35,12 @@ TEST(Certificate, EveryCameraThatShipsPasses) {
 
 TEST(Certificate, CameraWithEveryPartAtWorkPassesEveryRow) {
   expect_passes(busy_camera(), small_screen(), "busy");
-  // But for black's mean beside dark counts.
+  // All rows except the mean of black, which does not apply to dark counts.
   const Certificate certificate = certify(busy_camera(), small_screen());
   EXPECT_EQ(certificate.count(Verdict::DoesNotApply), 1);
 }
 
-// A halo wider than the screen, a tube that hardly forgets, noise below single precision, an iris
-// that cannot move.
+// A halo wider than the screen, a tube with long lag, noise below single precision, a fixed iris.
 TEST(Certificate, CamerasAtTheEndsOfTheirRangesPass) {
   CctvCamera wide;
   wide.saturation = 4.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laws of EMVA 1288 on fields whose noise is known.
+// Laws of EMVA 1288 for fields with known noise.
 #include "degrade/certify/photon_transfer.h"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ TEST(PhotonTransfer, NoiseThatIsNewInEachFrameLeavesNoPattern) {
   expect_near(found.fixed_c, 0.0, "PRNU^2");
 }
 
-// Without the subtraction of (in time) / L the mean of two frames would show half of it as pattern.
+// Without the subtraction of (in time) / L the mean of two frames would have half of it as pattern.
 TEST(PhotonTransfer, VarianceInSpaceIsFreeOfNoiseInTime) {
   for (const std::size_t frames : {2U, 4U}) {
     const FlatField white = measured({.a = 1e-2}, frames).back();
@@ -74,13 +74,13 @@ TEST(PhotonTransfer, VarianceInSpaceIsFreeOfNoiseInTime) {
   }
 }
 
-// A sample variance of n normal values scatters by sigma^2 sqrt(2 / (n - 1)).
+// A sample variance of n normal values has the standard deviation sigma^2 sqrt(2 / (n - 1)).
 TEST(PhotonTransfer, ErrorOfAVarianceIsThatOfNormalNoise) {
   const Estimate time = mean_of(measured({.a = 1e-2}, 2).back().in_time);
   EXPECT_NEAR(time.error, 1e-2 * std::sqrt(2.0 / (edge * edge)), 0.15 * time.error);
 }
 
-// Chart without any noise: no error, no part of the law.
+// A chart without noise: no error, and all parts of the law are zero.
 TEST(PhotonTransfer, NoNoiseIsZeroNotAFault) {
   const PhotonTransfer found = fit_photon_transfer(measured({}, 2));
   for (const Estimate& part : {found.a, found.b, found.c, found.fixed_a, found.fixed_c}) {

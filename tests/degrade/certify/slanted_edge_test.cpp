@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ISO 12233's method on edges whose profile is known.
+// ISO 12233's method for edges with known profile.
 #include "degrade/certify/slanted_edge.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,8 @@ TEST(SlantedEdge, FindsTheAngleAndTheEnds) {
   }
 }
 
-// The resel's own area average: sinc(f cos) sinc(f sin), found to 0.01 up to Nyquist and beyond.
+// The area average of the resel: sinc(f cos) sinc(f sin), measured to 0.01 up to Nyquist and
+// beyond.
 TEST(SlantedEdge, SharpEdgeHasTheModulationOfTheResel) {
   for (const double degrees : {4.0, 5.0, 7.0}) {
     const double angle = base::radians(degrees);
@@ -76,7 +77,7 @@ TEST(SlantedEdge, FineBinsGiveTheProfile) {
   EXPECT_NEAR(found.crossing(0.9) - found.crossing(0.1), 0.8 * std::cos(base::radians(5.0)), 0.03);
 }
 
-// Noise of a tenth of the step: found to four of the errors that eight edges show.
+// Noise of a tenth of the step: measured within four standard errors of sixteen edges.
 TEST(SlantedEdge, NoiseDoesNotShiftTheModulation) {
   std::vector<double> found;
   for (std::uint64_t frame = 0; frame < 16; ++frame) {
@@ -88,7 +89,7 @@ TEST(SlantedEdge, NoiseDoesNotShiftTheModulation) {
   EXPECT_NEAR(mean.value, sinc(0.25 * std::cos(base::radians(5.0))), 4.0 * mean.error + 0.01);
 }
 
-// Neither noise alone nor a picture that is not a number has an edge; both come back without one.
+// Noise alone and a picture of NaN have no edge; both return without one.
 TEST(SlantedEdge, NoEdgeIsNoFault) {
   const Picture noise =
       add_read_noise({columns, rows, {Plane(columns * rows, 0.5F)}}, {.a = 1.0}, {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The algebra of the noise's second moments against closed forms and the direct double sum.
+// Second moments of the noise, against closed forms and the direct double sum.
 #include "degrade/moments/noise_moments.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ using test::ramp;
 float largest(const Plane& plane) { return *std::max_element(plane.begin(), plane.end()); }
 
 // C'(z, z') = sum over all pixels p of w(z, p) w(z', p) var(p), for white noise var(p): the direct
-// sum over all pairs of a small picture, where every border is near.
+// sum over all pairs of a small picture, in which every border is near.
 void expect_direct_sum(const Covariance& c, const Plane& variance, const AxisMap& along,
                        const AxisMap& across) {
   const std::vector<double> h = matrix(along), v = matrix(across);
@@ -87,8 +87,8 @@ TEST(NoiseMoments, TwoFiltersInSequenceAreTheFilterOfTheirComposition) {
 }
 
 // sum over n of h(n) h(n + k), h = e^-t I_n(t): the autocorrelation of a discrete Gaussian is the
-// discrete Gaussian of twice the variance, e^-2t I_k(2t). For wide ones that is the continuous
-// exp(-k^2 / 4 s^2) / (2 s sqrt pi); the two differ by the order 1 / (16 s^2).
+// discrete Gaussian of twice the variance, e^-2t I_k(2t). For large sigma it approaches the
+// continuous exp(-k^2 / 4 s^2) / (2 s sqrt pi), with a difference of order 1 / (16 s^2).
 TEST(NoiseMoments, GaussianGrainIsTheClosedForm) {
   for (const double sigma : {0.35, 0.7, 1.5, 4.0}) {
     const Covariance c = filtered(white(101, 5, Plane(505, 0.25F)), gaussian_blur(101, sigma),
@@ -117,8 +117,9 @@ TEST(NoiseMoments, OnlyOffsetsThatMatterAreKept) {
     EXPECT_TRUE(c.offsets[k].dy > 0 || (c.offsets[k].dy == 0 && c.offsets[k].dx > 0));
   }
   // rho(k) = I_k(2t) / I_0(2t), 2t = 0.245: 0.122, 0.0074, 3e-4, 9e-6, 2e-7. The largest variance,
-  // in the corners, is (1 + rho(1))^2 = 1.26 times that of the middle, so products above 1.26e-6
-  // stay: (0..4, 0), (0..3, 1), (0..3, 2), (0..2, 3), (0, 4), and their mirror images.
+  // in the corners, is (1 + rho(1))^2 = 1.26 times the variance in the middle, so that products
+  // above 1.26e-6 are kept: (0..4, 0), (0..3, 1), (0..3, 2), (0..2, 3), (0, 4), and their mirror
+  // images.
   EXPECT_EQ(c.planes.size(), 25U);
 }
 
@@ -142,11 +143,11 @@ TEST(NoiseMoments, GainsScaleEachPairByBothEnds) {
   }
 }
 
-// Noise about black, half of it clamped: for zero means, equal sigmas and the correlation rho
+// Noise about black, half of it clamped. For zero means, equal sigmas and the correlation rho
 //   E max(X, 0) max(Y, 0) = sigma^2 (sqrt(1 - rho^2) + rho (pi - arccos rho)) / 2 pi,
 // and each mean is sigma / sqrt(2 pi). The series of the covariance is rho / 4 + rho^2 / 4 pi +
-// rho^4 / 48 pi + ..., all terms positive and ever smaller, so the first two leave between rho^4 /
-// 48 pi and 3 rho^4 / 48 pi. found, in units of sigma^2.
+// rho^4 / 48 pi + ..., with positive, decreasing terms. The error of the first two is therefore
+// between rho^4 / 48 pi and 3 rho^4 / 48 pi. found: in units of sigma^2.
 void expect_two_terms(double found, double rho) {
   const double exact =
       (std::sqrt(1.0 - rho * rho) + rho * (base::pi - std::acos(rho)) - 1.0) / (2.0 * base::pi);
@@ -169,7 +170,7 @@ TEST(NoiseMoments, ClampedNeighboursShareTheFirstTwoTermsOfTheClosedForm) {
   }
 }
 
-// Two frames with 0.3 of their variance in common.
+// Two frames that share 0.3 of their variance.
 TEST(NoiseMoments, ClampedFramesShareTheFirstTwoTermsOfTheirPattern) {
   const Covariance pattern = white(4, 3, Plane(12, 0.3F));
   PointMap clamp;
@@ -178,8 +179,8 @@ TEST(NoiseMoments, ClampedFramesShareTheFirstTwoTermsOfTheirPattern) {
   expect_two_terms(entry(after, 2, 1, 2, 1), 0.3);
 }
 
-// Rows of the two fields woven: n(y) from field y mod 2, each with the covariance C within a field
-// and lambda C across them.
+// Interleaved rows of two fields: n(y) is from field y mod 2, with the covariance C within a field
+// and lambda C between them.
 TEST(NoiseMoments, WovenFieldsShareWhatLagCarriesAcross) {
   const Covariance c =
       filtered(white(20, 20, Plane(400, 1.0F)), gaussian_blur(20, 0.6), gaussian_blur(20, 0.9));
@@ -220,8 +221,8 @@ TEST(NoiseMoments, FiltersThatDoNotFitAreRefused) {
 }
 
 TEST(NoiseMoments, WideFiltersThatDoNotFitAreRefusedBeforeTheWork) {
-  // Every pair of 200 columns is alike after a filter as wide as the picture: 200 offsets at the
-  // least, 200 x 200 floats each, 32 MB.
+  // With a filter as wide as the picture every pair of 200 columns is correlated: at least 200
+  // offsets of 200 x 200 floats each, 32 MB.
   const int size = 200;
   const AxisMap wide = gaussian_blur(size, 60.0);
   const Covariance noise = white(size, size, Plane(std::size_t{size} * size, 1.0F));

@@ -25,9 +25,9 @@ PointMap clamp_and_gamma(double white, double gamma) {
   return map;
 }
 
-// v = min(max(S, 0), W)^(1/gamma) by the midpoint rule, with the clipped shares at both ends: over
-// S itself, or, where v is steep at 0, over v, in which S = v^gamma and dS = gamma v^(gamma - 1)
-// dv. The slope is the integral of the density of S over dv.
+// v = min(max(S, 0), W)^(1/gamma) by the midpoint rule, plus the clipped shares at both ends.
+// Integrates over S, or, if v is steep at 0, over v, where S = v^gamma and
+// dS = gamma v^(gamma - 1) dv. The slope is the integral of the density of S over dv.
 PointMoments by_fine_sum(double mu, double sigma, double white, double gamma) {
   const double exponent = std::max(1.0, gamma);  // S = u^exponent, v = u^(exponent / gamma)
   const double low = std::pow(std::clamp(mu - 9.0 * sigma, 0.0, white), 1.0 / exponent);
@@ -68,8 +68,8 @@ void expect_near(const PointMoments& found, const PointMoments& expected, double
               2.0 * tolerance * deviation + 1e-10 * sigma);
 }
 
-// V29: z = (W - mu) / sigma; E = mu P + W (1 - P) - sigma p, E2 = (mu^2 + sigma^2) P
-// - sigma (mu + W) p + W^2 (1 - P); the saturated share is 1 - P.
+// V29: z = (W - mu) / sigma; E = mu P + W (1 - P) - sigma p;
+// E2 = (mu^2 + sigma^2) P - sigma (mu + W) p + W^2 (1 - P); the saturated share is 1 - P.
 TEST(PointMoments, ClipAtWhiteIsTheClosedForm) {
   const double white = 1.1;
   for (const double mu : {0.2, 0.9, 1.1, 1.4}) {
@@ -87,7 +87,7 @@ TEST(PointMoments, ClipAtWhiteIsTheClosedForm) {
   }
 }
 
-// Half of a Gaussian about 0 clamped: mean sigma / sqrt(2 pi), second moment sigma^2 / 2.
+// Half of a Gaussian about 0 is clamped: mean sigma / sqrt(2 pi), second moment sigma^2 / 2.
 TEST(PointMoments, ClampAtBlackOfPureNoiseIsTheHalfGaussian) {
   const PointMoments m = clamped(0.0, 0.4, 0.0, infinite);
   EXPECT_NEAR(m.mean, 0.4 / std::sqrt(2.0 * base::pi), 1e-15);
@@ -132,7 +132,7 @@ TEST(PointMoments, WithoutNoiseAMapGivesItsValue) {
   }
 }
 
-// One bit: 1 above one half. Mean P, variance P (1 - P), slope p / sigma, curvature dp / dmu.
+// One bit, 1 above one half: mean P, variance P (1 - P), slope p / sigma, curvature dp / dmu.
 TEST(PointMoments, OneBitIsACoin) {
   PointMap map;
   map.quantise(1);
@@ -146,8 +146,8 @@ TEST(PointMoments, OneBitIsACoin) {
   }
 }
 
-// V25: noise of more than a step dithers; rounding then adds 1/12 of a squared step, no bias, and
-// leaves the slope 1 (the error is of the order exp(-2 pi^2 (sigma / step)^2)).
+// V25: noise of more than a step is a dither. Rounding then adds 1/12 of a squared step and no
+// bias, and the slope is 1 (the error is of order exp(-2 pi^2 (sigma / step)^2)).
 TEST(PointMoments, RoundingOfNoiseAddsATwelfthOfASquaredStep) {
   const double step = 1.0 / 255.0;
   PointMap map;
@@ -172,7 +172,7 @@ TEST(PointMap, IsTheStagesItIsMadeOf) {
   }
 }
 
-// Two bits have levels 0, 1/3, 2/3, 1 and kinks at v = 1/6, 1/2, 5/6, where S = v^2 / gain.
+// Two bits have the levels 0, 1/3, 2/3, 1 and kinks at v = 1/6, 1/2, 5/6, where S = v^2 / gain.
 TEST(PointMap, KinksAreTracedBackToTheSignal) {
   PointMap map;
   map.limit_below(0.0).amplify(4.0).limit_above(0.81).power(0.5);
@@ -188,7 +188,7 @@ TEST(PointMap, KinksAreTracedBackToTheSignal) {
   EXPECT_NEAR(map.stretches()[4].value, 1.0, 1e-15);
 }
 
-// Between 0.2 and 0.4 two bits know one level only, 1/3; their thresholds are out of reach.
+// Between 0.2 and 0.4 two bits have the single level 1/3; no threshold is inside.
 TEST(PointMap, KinksOutOfReachAreNone) {
   PointMap map;
   map.limit_below(0.2).limit_above(0.4).quantise(2);
@@ -199,7 +199,7 @@ TEST(PointMap, KinksOutOfReachAreNone) {
 struct Pixels {
   Plane mean, variance;
 };
-// 40 000 of them, so that a table pays; sigma evenly in its logarithm.
+// 40 000 pixels, so that a table is used; sigma is uniform in its logarithm.
 Pixels many(double least, double most, double least_sigma, double most_sigma) {
   Pixels pixels;
   base::Rng rng(base::Key(5, base::Stream::Test, 0));
@@ -211,7 +211,7 @@ Pixels many(double least, double most, double least_sigma, double most_sigma) {
   return pixels;
 }
 
-// Where next to nothing comes through, errors are seen against the rise of f within six sigma.
+// Where f is nearly constant, the tolerance is relative to the rise of f within six sigma.
 void expect_each_on_its_own(const PointMap& map, const Pixels& pixels) {
   const MomentPlanes planes = through(map, pixels.mean, pixels.variance);
   for (std::size_t i = 0; i < pixels.mean.size(); i += 7) {
@@ -236,7 +236,7 @@ TEST(PointMoments, ManyPixelsAgreeWithEachOnItsOwn) {
     expect_each_on_its_own(map, many(-0.1, 1.2, 0.02, 0.2));      // all of a noisy picture
     expect_each_on_its_own(map, many(-0.001, 0.004, 1e-3, 0.1));  // black
     expect_each_on_its_own(map, many(0.39, 0.43, 2e-3, 8e-3));    // within a step of 0.02
-    expect_each_on_its_own(map, many(0.0, 1.0, 1e-5, 1e-4));      // hardly any noise
+    expect_each_on_its_own(map, many(0.0, 1.0, 1e-5, 1e-4));      // very little noise
   }
 }
 
@@ -250,9 +250,9 @@ TEST(PointMoments, SameBitsOnAnyNumberOfThreads) {
   EXPECT_EQ(run(1), run(16));
 }
 
-// Amplifier noise at a signal within it, clamped at black, through gamma: the mean of the drawn
-// values, with the standard error s / sqrt(M), and their variance, with s^2 sqrt((kurtosis - 1) /
-// M).
+// Amplifier noise at a signal below its sigma, clamped at black, after gamma: mean of the samples
+// with the standard error s / sqrt(M), and their variance with the standard error
+// s^2 sqrt((kurtosis - 1) / M).
 TEST(PointMoments, DrawnNoiseHasThePredictedMomentsBehindClampAndGamma) {
   const NoiseLaw law{0.0025, 0.0, 0.0, false};
   PointMap map;

@@ -39,7 +39,7 @@ TEST(WhiteClip, MomentsOfClippedNoiseAreTheirClosedForm) {
     const Picture clipped = transform(gaussian_field(mu, sigma), PointMap().limit_above(limit));
     const auto found = moments(clipped.planes[0]);
     EXPECT_NEAR(found.mean, mean, 4.0 * std::sqrt((square - mean * mean) / count)) << mu;
-    // The variance's standard error from the sample's own fourth moment.
+    // The standard error of the variance is from the fourth moment of the sample.
     EXPECT_NEAR(found.variance, square - mean * mean,
                 4.0 * std::sqrt((found.fourth - found.variance * found.variance) / count))
         << mu;
@@ -83,7 +83,8 @@ TEST(Gamma, RoundTripIsTheIdentityAndNegativeIsBlackNotNan) {
   }
 }
 
-// sigma_v = sigma S^(1/g - 1) / g: noise on the coded signal, for noise small against the signal.
+// sigma_v = sigma S^(1/g - 1) / g: noise of the coded signal, for noise much smaller than the
+// signal.
 TEST(Gamma, LiftsTheNoiseOfShadowsAsItsSlopeSays) {
   for (const float s : {0.2F, 0.8F}) {
     const double sigma = 0.002;
@@ -93,9 +94,9 @@ TEST(Gamma, LiftsTheNoiseOfShadowsAsItsSlopeSays) {
   }
 }
 
-// A value equally likely anywhere between two levels of distance q is rounded with variance q^2 /
-// 12 and no bias; cutting off instead would be -q/2 off. The ramp covers many levels evenly; se of
-// the mean q / sqrt(12 M).
+// For a value uniform between two levels of distance q, the rounding error has the variance
+// q^2 / 12 and no bias; truncation would have the bias -q/2. The ramp covers many levels uniformly;
+// the standard error of the mean is q / sqrt(12 M).
 TEST(Quantise, RoundsWithoutBiasAndAddsATwelfth) {
   constexpr int bits = 6;
   const double q = 1.0 / 63.0;

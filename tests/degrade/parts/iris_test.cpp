@@ -28,7 +28,7 @@ CctvCamera camera_with(IrisMode iris) {
   return camera;
 }
 
-// Bright spot in the middle of a slope: brighter and darker places for every meter.
+// A bright spot in the middle of a slope: every meter gets brighter and darker parts.
 double scene(double x, double y) {
   const double r2 = (x - 0.5) * (x - 0.5) + (y - 0.5) * (y - 0.5);
   return 0.2 + x + (r2 < 0.04 ? 20.0 : 0.0);
@@ -36,8 +36,7 @@ double scene(double x, double y) {
 
 Picture scene_picture() { return {80, 60, {painted(80, 60, scene).channels[0].values}}; }
 
-// A sphere's worth of uniform luminance L through an aperture of f-number N: E = pi tau L / (4
-// N^2).
+// A uniform scene of luminance L through a lens of f-number N: E = pi tau L / (4 N^2).
 TEST(Lens, TransferIsInverseInTheSquareOfTheFNumber) {
   CctvCamera camera;
   camera.transmittance = 0.8;
@@ -70,7 +69,7 @@ TEST(Meter, FlatSceneIsMeteredAsItself) {
   }
 }
 
-// The power-mean inequality: M_p grows with p, and is constant exactly for a flat scene.
+// The power-mean inequality: M_p grows with p, and is constant only for a flat scene.
 TEST(Meter, PowerMeanGrowsWithItsPowerUnlessTheSceneIsFlat) {
   const Plane values = scene_picture().planes[0], even(4800, 2.0F);
   double last = 0.0;
@@ -108,8 +107,7 @@ TEST(Iris, MeteredValueReachesItsTargetInsideTheRange) {
   }
 }
 
-// A scene four times as bright takes twice the f-number, a power of two: the same picture to the
-// last bit.
+// A scene four times as bright needs twice the f-number, a power of two: bitwise the same picture.
 TEST(Iris, BrighterSceneInsideTheRangeGivesTheSamePicture) {
   const base::Image dim = painted(200, 150, scene);
   base::Image bright = dim;

@@ -15,8 +15,8 @@ namespace {
 
 using test::flat;
 
-// Amplitude of a cosine of `cycles` per resel after the filter, over the one before, in the middle
-// of the line (the phase of a symmetric filter is 0).
+// Gain of the filter for a cosine of `cycles` per resel, in the middle of the line (the phase of a
+// symmetric filter is 0).
 double transfer(const AxisMap& filter, double cycles) {
   const std::size_t middle = static_cast<std::size_t>(filter.out() / 2);
   double sum = 0.0;
@@ -27,8 +27,8 @@ double transfer(const AxisMap& filter, double cycles) {
   return sum;
 }
 
-// -3 dB is a power of one half, an amplitude of 1 / sqrt 2. A line of 52.66 us holds the whole
-// screen's columns, so B MHz is B 52.66 / columns cycles per resel, whatever the picture's width.
+// -3 dB is half of the power, an amplitude of 1 / sqrt 2. A line of 52.66 us has the columns of the
+// whole screen, so that B MHz is B 52.66 / columns cycles per resel for pictures of any width.
 TEST(Bandwidth, IsThreeDecibelsDownAtItsFrequencyForEveryWidth) {
   for (const int screen : {400, 512, 1000}) {
     for (const double mhz : {1.0, 2.5, 3.5}) {
@@ -41,7 +41,7 @@ TEST(Bandwidth, IsThreeDecibelsDownAtItsFrequencyForEveryWidth) {
   }
 }
 
-// From the resels' Nyquist frequency on no grid can show the -3 dB point: the filter goes over to
+// From the Nyquist frequency of the resels on, no grid can have the -3 dB point: the filter is then
 // the continuous Gaussian and vanishes with growing bandwidth.
 TEST(Bandwidth, BeyondNyquistTheVarianceFallsAsTheInverseSquare) {
   EXPECT_NEAR(bandwidth_variance(8.0, 400) / bandwidth_variance(16.0, 400), 4.0, 1e-9);
@@ -76,7 +76,7 @@ TEST(Weave, TwoEqualFieldsAreThePicture) {
   EXPECT_EQ(weave(picture, picture).planes[0], picture.planes[0]);
 }
 
-// A bar that moves v columns a frame stands v / 2 further in the second field: the comb's teeth.
+// A bar that moves v columns per frame is v / 2 further in the second field: the teeth of the comb.
 TEST(Weave, MotionOfAFrameMakesACombOfHalfOfIt) {
   const auto bar = [](int x) {
     Picture picture = flat(20, 6, 0.0F);
@@ -92,8 +92,8 @@ TEST(Weave, MotionOfAFrameMakesACombOfHalfOfIt) {
   }
 }
 
-// Each field has noise of its own: the even lines are those of a camera without fields, the odd
-// ones are not; without noise the weave is the progressive picture.
+// Fields have independent noise: the even lines are equal to those of a camera without fields, the
+// odd ones are not. Without noise the interlaced picture is the progressive picture.
 TEST(Interlace, FieldsShareThePictureButNotTheNoise) {
   CctvCamera camera;
   camera.gamma = 1.0;
@@ -113,10 +113,10 @@ TEST(Interlace, FieldsShareThePictureButNotTheNoise) {
     else if (woven[i] == progressive[i])
       ++equal_odd;
   }
-  EXPECT_LT(equal_odd, 20U);  // black and white clamps, and chance, of 60 000
+  EXPECT_LT(equal_odd, 20U);  // of 60 000: clamped black and white, and coincidence
 }
 
-// Whole rows of one field's picture, then of the other's: no stage before the weave mixes them.
+// Whole rows of one picture, then of the other: no stage before the interlace mixes them.
 TEST(Interlace, FieldsOfTheirOwnPicturesAreWoven) {
   CctvCamera camera;
   camera.gamma = 1.0;
@@ -136,8 +136,8 @@ TEST(Interlace, FieldsOfTheirOwnPicturesAreWoven) {
   EXPECT_THROW(static_cast<void>(degrade_fields(bar(0.5), bar(0.5), camera, {})), base::Error);
 }
 
-// One iris for a frame: the second field, twice as bright, is exposed as the first one was, and
-// what is counted over the frame is the mean of its fields.
+// One iris per frame: the second field, twice as bright, has the exposure of the first. Shares of
+// the frame are means over its fields.
 TEST(Interlace, IrisFollowsTheFirstFieldAndSharesAreOfTheFrame) {
   CctvCamera camera;
   camera.gamma = 1.0;

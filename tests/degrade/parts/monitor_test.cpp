@@ -18,8 +18,8 @@ using test::flat;
 constexpr Spread shapes[] = {Spread::None, Spread::Gaussian, Spread::Triangle, Spread::Sinc};
 constexpr double fwhm_per_sigma = 2.3548200450309493;  // 2 sqrt(2 ln 2)
 
-// The screen's response to a step between two resels: dark left of 0, light right of it. Positions
-// in resels.
+// Response of the screen to a step between two resels, dark left of 0 and bright right of it.
+// Positions in resels.
 struct Edge {
   std::vector<double> at, light;
 };
@@ -37,7 +37,7 @@ Edge edge_of(Spread spread, double width, int pixels_per_resel) {
   return edge;
 }
 
-// Where the edge first passes a level, by linear interpolation.
+// First crossing of a level, by linear interpolation.
 double crossing(const Edge& edge, double level) {
   for (std::size_t i = 1; i < edge.at.size(); ++i) {
     if (edge.light[i] < level) continue;
@@ -54,7 +54,7 @@ TEST(PictureGrid, WholePictureWithSquareResels) {
     return std::pair{g.columns, g.rows};
   };
   EXPECT_EQ(grid(640, 480), (std::pair{400, 300}));  // 4:3 fills the screen
-  EXPECT_EQ(grid(512, 512), (std::pair{300, 300}));  // square: the middle of the screen
+  EXPECT_EQ(grid(512, 512), (std::pair{300, 300}));  // square: in the middle of the screen
   EXPECT_EQ(grid(100, 400), (std::pair{75, 300}));
   EXPECT_EQ(grid(1920, 1080), (std::pair{400, 225}));  // wider: bars above and below
   EXPECT_EQ(grid(1, 1), (std::pair{300, 300}));
@@ -99,8 +99,8 @@ TEST(Spread, NoneRepeatsEachResel) {
             (Plane{3.0F, 3.0F, 5.0F, 5.0F, 3.0F, 3.0F, 5.0F, 5.0F}));
 }
 
-// A held step spread by a Gaussian is the normal distribution function; 10 to 90 % takes 2.563
-// sigma.
+// A step of constant resels, spread by a Gaussian, is the normal distribution function; its rise
+// from 10 to 90 % is 2.563 sigma.
 TEST(Spread, GaussianEdgeIsTheNormalIntegral) {
   for (const double fwhm : {0.6, 1.0, 2.5}) {
     const double sigma = fwhm / fwhm_per_sigma;
@@ -113,8 +113,8 @@ TEST(Spread, GaussianEdgeIsTheNormalIntegral) {
   }
 }
 
-// Integral of (1 - |x| / w) / w: 1 - (1 - x/w)^2 / 2 on the right; 10 to 90 % takes 2 w (1 -
-// sqrt(0.2)) = 1.1056 w.
+// Integral of (1 - |x| / w) / w: 1 - (1 - x/w)^2 / 2 on the right; the rise from 10 to 90 % is
+// 2 w (1 - sqrt(0.2)) = 1.1056 w.
 TEST(Spread, TriangleEdgeIsTwoParabolas) {
   for (const double w : {1.0, 2.0}) {
     const Edge edge = edge_of(Spread::Triangle, w, 8);
@@ -127,9 +127,9 @@ TEST(Spread, TriangleEdgeIsTwoParabolas) {
   }
 }
 
-// 1/2 + Si(pi x / p) / pi: 10 to 90 % takes 0.892 p, and the light overshoots by 8.949 % one zero
-// after the edge. The window of eight zeros lowers that by 0.0025, reading 0.06 resels beside the
-// peak by up to 0.002.
+// 1/2 + Si(pi x / p) / pi: the rise from 10 to 90 % is 0.892 p, and the light overshoots by 8.949 %
+// one zero after the edge. The window of eight zeros reduces this by 0.0025, the sampling up to
+// 0.06 resels beside the peak by up to 0.002.
 TEST(Spread, SincEdgeRingsAsTheSineIntegral) {
   for (const double p : {1.0, 1.5}) {
     const Edge edge = edge_of(Spread::Sinc, p, 8);
@@ -165,7 +165,7 @@ TEST(Spread, RoundSpotOfTheGaussianIsTheSameInEveryDirection) {
     return static_cast<double>(
         out.planes[0][static_cast<std::size_t>((102 + dy) * 205 + 102 + dx)]);
   };
-  // 3-4-5 triangles: equal distances. A resel is a square, which leaves a small difference.
+  // 3-4-5 triangles: equal distances. A resel is a square, so that a small difference remains.
   EXPECT_NEAR(at(5, 0) / at(3, 4), 1.0, 1e-3);
   EXPECT_NEAR(at(10, 0) / at(6, 8), 1.0, 4e-3);
 }
@@ -176,8 +176,8 @@ Picture driven(Picture line_signal, const Monitor& m) {
   return transform(std::move(line_signal), map);
 }
 
-// Light adds after gamma: a fine checkerboard seen through a wide spot has half the light of white.
-// Spread before gamma it would have 0.5^2.2 = 0.218 of it.
+// Light is added after gamma: a fine checkerboard through a wide spot has half the light of white.
+// With the spread before gamma it would have 0.5^2.2 = 0.218 of it.
 TEST(Screen, GammaComesBeforeTheSpread) {
   Monitor monitor;
   monitor.black_luminance = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The noise as a field: neighbours, frames, planes, threads.
+// The noise as a random field: neighbours, frames, planes, threads.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -46,9 +46,9 @@ TEST(NoiseField, FramesViewsSeedsPlanesAndStagesAreUncorrelated) {
   }
 }
 
-// With m values per tile a tile's variance has the relative variance 2 / (m - 1); the sum over 16
-// tiles of the squared standardised deviations is chi-squared with 16 degrees of freedom, standard
-// deviation sqrt(32).
+// With m values per tile, a tile's variance has the relative variance 2 / (m - 1). The sum over 16
+// tiles of the squared standardised deviations is chi-squared with 16 degrees of freedom and the
+// standard deviation sqrt(32).
 TEST(NoiseField, IsTheSameStrengthEverywhere) {
   const Plane noise = field({3, 0, 0});
   double chi2 = 0.0;
@@ -93,10 +93,10 @@ TEST(NoiseField, DifferingSensitivityIsTheSamePatternInEveryFrame) {
   EXPECT_NE(frame(grain, 0), frame(grain, 9));
 }
 
-// White noise through weights h along each axis: variance times (sum h^2)^2. For the discrete
-// Gaussian sum h_n h_(n+k) = e^(-2t) I_k(2t), h with the variance 2t; so neighbours correlate as
-// I_1(2t) / I_0(2t). The sample variance of correlated noise has the relative variance (2 / M) (sum
-// over lags of rho^2) per axis.
+// White noise through weights h along each axis: the variance is multiplied by (sum h^2)^2. For the
+// discrete Gaussian sum h_n h_(n+k) = e^(-2t) I_k(2t), that is h with the variance 2t, so that the
+// correlation of neighbours is I_1(2t) / I_0(2t). The sample variance of correlated noise has the
+// relative variance (2 / M) (sum over lags of rho^2) per axis.
 TEST(NoiseField, BlurAfterNoiseShrinksItAndMakesGrain) {
   for (const double sigma : {0.35, 0.7, 1.5}) {
     const std::vector<double> twice = discrete_gaussian(sigma * std::sqrt(2.0));
@@ -108,7 +108,8 @@ TEST(NoiseField, BlurAfterNoiseShrinksItAndMakesGrain) {
     const AxisMap blur = gaussian_blur(edge, sigma);
     const Plane grain = apply(noise, blur, blur).planes[0];
     const double variance = white.a * h2 * h2;
-    // The border, where weights are mirrored, has up to twice the variance: allow for its share.
+    // The border has mirrored weights and up to twice the variance; the tolerance includes its
+    // share.
     const double border = 4.0 * 2.0 * sigma / edge;
     EXPECT_NEAR(moments(grain).variance / variance, 1.0,
                 4.0 * rho2 * std::sqrt(2.0 / count) + border)

@@ -24,7 +24,7 @@ CctvCamera with_noise(NoiseMode mode, double snr_db = 40.0) {
   return camera;
 }
 
-// The camera with the settings of a form put into their fields, as a file with them would have it.
+// The camera with the settings of a form, as read from a file.
 CctvCamera with_form(CctvCamera camera, const NoiseForm& form) {
   camera.noise = form.mode;
   camera.read_electrons = camera.prnu_percent = camera.dark_electrons = camera.dsnu_percent = 0.0;
@@ -45,9 +45,8 @@ const NoiseForm* find(const std::vector<NoiseForm>& forms, NoiseMode mode) {
   return found == forms.end() ? nullptr : &*found;
 }
 
-// 40 dB: sigma = 1 % of white. In the spec's mode it is the same sigma at every level, so
-// SNR(0.5) = 40 - 20 lg 2 = 33.98 dB and SNR(0.05) = 40 - 20 lg 20 = 13.98 dB; in the report's mode
-// it is the same share at every level.
+// 40 dB: sigma = 1 % of white. Spec: equal sigma at every level, hence SNR(0.5) = 40 - 20 lg 2 =
+// 33.98 dB and SNR(0.05) = 40 - 20 lg 20 = 13.98 dB. Report: an equal share at every level.
 TEST(NoiseForms, DecibelsOfTheTwoModesPartInTheDark) {
   const NoiseWords spec = noise_words(with_noise(NoiseMode::Spec));
   EXPECT_NEAR(spec.snr_white_db, 40.0, 1e-12);
@@ -62,7 +61,7 @@ TEST(NoiseForms, DecibelsOfTheTwoModesPartInTheDark) {
   EXPECT_NEAR(report.percent_of_signal, 1.0, 1e-12);
 }
 
-// 10 lg n dB at white and 10 lg(n / 2) at half: shot noise alone, 640 electrons 28.06 dB.
+// 10 lg n dB at white and 10 lg(n / 2) at half: pure shot noise, 640 electrons give 28.06 dB.
 TEST(NoiseForms, ElectronsAreTheirOwnSignalToNoise) {
   CctvCamera camera = with_noise(NoiseMode::Photon);
   camera.electrons_at_white = 640.0;
@@ -70,16 +69,16 @@ TEST(NoiseForms, ElectronsAreTheirOwnSignalToNoise) {
   EXPECT_NEAR(words.snr_white_db, 28.0618, 1e-4);
   EXPECT_NEAR(words.snr_half_db, 10.0 * std::log10(320.0), 1e-12);
   EXPECT_NEAR(words.electrons_at_white, 640.0, 1e-9);
-  // An intensifier with F^2 = 2 has the noise of half the electrons, and its amplifier that of half
-  // as many of them.
+  // An intensifier with F^2 = 2 has the noise of half the electrons. Its amplifier noise then
+  // equals half as many of these electrons.
   camera.excess_noise = 2.0;
   camera.read_electrons = 10.0;
   EXPECT_NEAR(noise_words(camera).electrons_at_white, 320.0, 1e-9);
   EXPECT_NEAR(noise_words(camera).read_electrons, 5.0, 1e-9);
 }
 
-// sigma_v = sigma S^(1/gamma - 1) / gamma: the derivative of v = S^(1/gamma), taken here from the
-// stage itself, at white and where S is a twentieth. Decibels grow by 20 lg gamma at every level.
+// sigma_v = sigma S^(1/gamma - 1) / gamma by the derivative of v = S^(1/gamma). The derivative is
+// taken from the stage, at white and at S = 1/20. Decibels grow by 20 lg gamma at every level.
 TEST(NoiseForms, GammaAddsTheSameDecibelsEverywhere) {
   const CctvCamera camera = with_noise(NoiseMode::Spec);
   const NoiseWords words = noise_words(camera);
@@ -99,8 +98,8 @@ TEST(NoiseForms, GammaAddsTheSameDecibelsEverywhere) {
   EXPECT_NEAR(words.line_snr_white_db, -20.0 * std::log10(words.line_sigma_white), 1e-12);
 }
 
-// Each form that claims to be the same noise gives the same law when a camera is made of it, and
-// those that do not claim it are right where they say so: at white, or at black.
+// A form that claims equal noise must give a camera with the same law. Other forms must be right at
+// the level that they name: white or black.
 TEST(NoiseForms, EveryFormGivesBackTheNoise) {
   std::vector<CctvCamera> cameras;
   for (const Preset& preset : presets()) cameras.push_back(preset.camera);
@@ -135,7 +134,7 @@ TEST(NoiseForms, OnlyFormsThatAFileMayHoldAreGiven) {
   ASSERT_NE(find(spec, NoiseMode::Law), nullptr);
   EXPECT_EQ(find(spec, NoiseMode::Law)->differs, "");
   CctvCamera loud = with_noise(NoiseMode::Law);
-  loud.noise_b = 2.0;  // half an electron at white; the key begins at 1
+  loud.noise_b = 2.0;  // half an electron at white; the key's minimum is 1
   EXPECT_EQ(find(other_forms(loud), NoiseMode::Photon), nullptr);
   loud.noise_b = 0.5;
   EXPECT_NE(find(other_forms(loud), NoiseMode::Photon), nullptr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The noise's variance on another grid: against the direct double sum and against drawn noise.
+// Variance of the noise on another grid, against the direct double sum and sampled noise.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ using test::lopsided;
 using test::matrix;
 using test::ramp;
 
-// The diagonal of W C W^T, whatever the size of the result, and the covariance of two results.
+// The diagonal of W C W^T for results of any size, and the covariance of two results.
 TEST(NoiseOnScreen, VariancesOnAnotherGridAreTheDirectDoubleSum) {
   const int columns = 7, rows = 6;
   const Covariance c = filtered(white(columns, rows, ramp(columns, rows)), lopsided(columns),
@@ -56,9 +56,9 @@ TEST(NoiseOnScreen, VariancesOnAnotherGridAreTheDirectDoubleSum) {
   }
 }
 
-// Drawn noise, blurred, and spread on the finer grid of the screen: over M pixels far apart and N
-// frames the mean of (sample square / predicted variance) is 1, with the standard error sqrt(2 / M
-// N).
+// Sampled noise, blurred and spread on the finer grid of the screen. Over M distant pixels and N
+// frames the mean of (sample square / predicted variance) is 1, with the standard error
+// sqrt(2 / M N).
 TEST(NoiseOnScreen, DrawnNoiseHasThePredictedVarianceOnTheScreen) {
   constexpr int columns = 40, rows = 30, frames = 250;
   const NoiseLaw law{0.04, 0.0, 0.0, false};
@@ -72,7 +72,7 @@ TEST(NoiseOnScreen, DrawnNoiseHasThePredictedVarianceOnTheScreen) {
     for (std::uint64_t frame = 0; frame < frames; ++frame) {
       const Picture noise = add_read_noise(flat(columns, rows, 0.0F), law, {3, frame, 0});
       const Plane seen = apply(apply(noise, along, across), wide, high).planes.front();
-      // The corners and the edges are among them.
+      // Includes corners and edges.
       for (int y = 0; y < 3 * rows; y += 22) {
         for (int x = 0; x < 3 * columns; x += 17) {
           const std::size_t i = at(x, y, 3 * columns);

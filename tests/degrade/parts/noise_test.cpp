@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Moments of the noise on flat fields of M values. Standard errors: of the mean sqrt(v / M); of the
-// variance sqrt((k4 + 2 v^2) / M) with k4 the fourth cumulant, 0 for a Gaussian.
+// Moments of the noise of flat fields of M values. Standard errors: of the mean sqrt(v / M), of the
+// variance sqrt((k4 + 2 v^2) / M), with k4 the fourth cumulant (0 for a Gaussian).
 #include "degrade/parts/noise.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ CctvCamera camera_with(NoiseMode mode) {
   return camera;
 }
 
-// Phi(1.959963985) = 0.975 and so on; the formula promises 16 digits.
+// Phi(1.959963985) = 0.975 and so on; the formula has an accuracy of 16 digits.
 TEST(NormalQuantile, InvertsTheNormalDistributionFunction) {
   for (const double x : {-8.0, -5.5, -3.0, -1.0, -0.2, 0.0, 0.4, 2.0, 4.0}) {
     const double p = 0.5 * std::erfc(-x / std::sqrt(2.0));
@@ -49,7 +49,7 @@ TEST(NoiseLaw, ReportIsAShareOfTheSignalAndSpecAConstant) {
   EXPECT_EQ(noise_law(camera).c, 0.0);
 }
 
-// EMVA 1288: shot noise sqrt(n) of n electrons at white is b = 1/n; here 640 electrons, 28.06 dB.
+// EMVA 1288: shot noise sqrt(n) of n electrons at white gives b = 1/n; 640 electrons, 28.06 dB.
 TEST(NoiseLaw, PhotonsGiveTheirTextbookSignalToNoiseRatio) {
   CctvCamera camera = camera_with(NoiseMode::Photon);
   camera.electrons_at_white = 640.0;
@@ -98,8 +98,8 @@ TEST(Noise, VarianceFollowsTheLawAtEveryLevel) {
   }
 }
 
-// Poisson: every cumulant is n. The third central moment has the standard error
-// sqrt((k6 + 9 k2 k4 + 9 k3^2 + 6 k2^3) / M).
+// Poisson: every cumulant is n. The standard error of the third central moment is sqrt((k6 + 9 k2
+// k4 + 9 k3^2 + 6 k2^3) / M).
 TEST(Noise, ShotNoiseHasVarianceAndThirdMomentEqualToItsMean) {
   for (const double n : {0.1, 1.0, 10.0, 63.0, 64.5, 100.0, 1e5}) {
     // Signals in electrons: b = 1.
@@ -110,8 +110,8 @@ TEST(Noise, ShotNoiseHasVarianceAndThirdMomentEqualToItsMean) {
   }
 }
 
-// Dark counts of the rate I during t: Poisson of mean I t, whose mean is taken off, so the signal's
-// mean stays and its variance grows by I t (not I t^2, nor nothing).
+// Dark counts of rate I during t: Poisson of mean I t. The mean is subtracted, so that the mean of
+// the signal is unchanged and its variance grows by I t (neither I t^2 nor 0).
 TEST(Noise, DarkCountsHaveTheVarianceOfTheirMean) {
   for (const double t : {0.01, 1.0, 100.0}) {
     CctvCamera camera;
@@ -126,7 +126,7 @@ TEST(Noise, DarkCountsHaveTheVarianceOfTheirMean) {
   }
 }
 
-// An intensifier multiplies the variance of light and dark alike by F^2.
+// An intensifier multiplies the variance of light and dark by F^2.
 TEST(Noise, ExcessNoiseMultipliesTheVarianceOfAllCounts) {
   CctvCamera camera;
   camera.noise = NoiseMode::Photon;
@@ -139,8 +139,8 @@ TEST(Noise, ExcessNoiseMultipliesTheVarianceOfAllCounts) {
   EXPECT_NEAR(m.variance / v, 1.0, 4.0 * std::sqrt(2.1 / count));
 }
 
-// What differs from resel to resel has the mean 1, and its spread is the one stated: dark pattern
-// over white, sensitivity over itself.
+// Fixed patterns have the mean 1 and the stated deviation: the dark pattern relative to white, the
+// sensitivity relative to its mean.
 TEST(Noise, PatternsHaveMeanOneAndTheirSpread) {
   CctvCamera camera;
   camera.noise = NoiseMode::Photon;
@@ -176,8 +176,8 @@ TEST(Noise, PoissonCountsHaveTheirProbabilities) {
   EXPECT_NEAR(one / count, p1, 4.0 * std::sqrt(p1 * (1.0 - p1) / count));
 }
 
-// Skewness and excess kurtosis of a Gaussian are 0 with standard errors sqrt(6 / M) and sqrt(24 /
-// M).
+// Skewness and excess kurtosis of a Gaussian are 0, with the standard errors sqrt(6 / M) and
+// sqrt(24 / M).
 TEST(Noise, AmplifierNoiseIsGaussian) {
   const test::Moments m = noisy({0.04, 0.0, 0.0, false}, 0.5F);
   EXPECT_NEAR(m.third / std::pow(m.variance, 1.5), 0.0, 4.0 * std::sqrt(6.0 / count));

@@ -16,8 +16,8 @@ namespace {
 using test::flat;
 
 // A pixel's angle off the axis: tan theta = (distance in half heights) tan(fov / 2). The light of a
-// uniform scene falls as cos^4 theta; of 90 degrees, the middle of the upper border has theta = 45
-// degrees but for half a pixel, so cos^4 = 1/4.
+// uniform scene falls as cos^4 theta. For 90 degrees, the middle of the upper border has theta = 45
+// degrees up to half a pixel, and cos^4 = 1/4.
 TEST(FallOff, IsThePowerOfTheCosineOfTheFieldAngle) {
   constexpr int n = 101;
   const Picture e = fall_off_from_axis(flat(n, n, 1.0F), 4.0, 90.0);
@@ -49,7 +49,7 @@ TEST(FallOff, WithoutAFieldOfViewIsRefusedWithWhatToDo) {
   EXPECT_LT(result.signal.channels[0].values[0], result.signal.channels[0].values[150 * 400 + 200]);
 }
 
-// E falls by (1 + m)^2: at m = 1 a quarter.
+// E falls by (1 + m)^2: to a quarter at m = 1.
 TEST(Lens, CloseUpsAreDarkerByTheirMagnification) {
   CctvCamera camera;
   const double far = lens_transfer(camera, 2.0);
@@ -61,14 +61,14 @@ TEST(Lens, CloseUpsAreDarkerByTheirMagnification) {
 TEST(Shading, CentreKeepsItsSignalAndCornersLoseTheDroop) {
   const Picture s = shade(flat(401, 301, 0.5F), 0.2);
   EXPECT_FLOAT_EQ(s.planes[0][150 * 401 + 200], 0.5F);
-  // The corner pixel's centre lies half a pixel inside: r^2 = (400^2 + 300^2) / (401^2 + 301^2).
+  // The centre of the corner pixel is half a pixel inside: r^2 = (400^2 + 300^2) / (401^2 + 301^2).
   const double r2 = (400.0 * 400.0 + 300.0 * 300.0) / (401.0 * 401.0 + 301.0 * 301.0);
   for (const std::size_t corner : {std::size_t{0}, std::size_t{400}, s.pixel_count() - 1}) {
     EXPECT_NEAR(static_cast<double>(s.planes[0][corner]), 0.5 * (1.0 - 0.2 * r2), 1e-6);
   }
 }
 
-// All linear stages commute: spread light, then convert, is convert, then spread.
+// Linear stages commute: spreading and converting light gives the same in either order.
 TEST(LensSpread, ActsOnLightLikeTheBlurActsOnSignal) {
   CctvCamera lens;
   lens.iris = IrisMode::Fixed;

@@ -25,8 +25,8 @@ Picture point(int columns, int rows, int x, int y, float value) {
   return picture;
 }
 
-// y_j = (1 - l) x_j + l y_(j-1): a flash in field 0 leaves (1 - l) l^j in field j; light that stays
-// arrives whole, 1 - l^(j+1) after j fields.
+// y_j = (1 - l) x_j + l y_(j-1): a flash in field 0 leaves (1 - l) l^j in field j. Steady light
+// reaches 1 - l^(j+1) after j fields.
 TEST(Lag, LeavesAGeometricTailAndKeepsSteadyLight) {
   constexpr double lag = 0.42;
   Picture flash = after_lag(flat(2, 2, 1.0F), flat(2, 2, 0.0F), lag);
@@ -41,8 +41,8 @@ TEST(Lag, LeavesAGeometricTailAndKeepsSteadyLight) {
   EXPECT_NEAR(std::pow(lag, 3), 0.074, 5e-4);
 }
 
-// Var y = (1 - l)^2 v + l^2 Var y, so Var y = v (1 - l) / (1 + l) at rest, 0.5385 v at l = 0.3; and
-// the first field after settled_charge has it already.
+// Var y = (1 - l)^2 v + l^2 Var y, hence Var y = v (1 - l) / (1 + l) at rest, 0.5385 v at l = 0.3.
+// The first field after settled_charge has it already.
 TEST(Lag, NoiseAtRestIsSmallerFromTheFirstFieldOn) {
   constexpr double lag = 0.3;
   constexpr int edge = 400;
@@ -56,13 +56,13 @@ TEST(Lag, NoiseAtRestIsSmallerFromTheFirstFieldOn) {
     EXPECT_NEAR(moments(charge.planes[0]).mean, 0.5, 4.0 * std::sqrt(v / count)) << j;
     const Picture before = charge;
     charge = after_lag(add_grain(still, law, {1, j, 0}), charge, lag);
-    // Neighbouring fields correlate as l.
+    // The correlation of consecutive fields is l.
     EXPECT_NEAR(test::correlation(before.planes[0], charge.planes[0], edge, edge, 0, 0), lag,
                 4.0 / std::sqrt(count));
   }
 }
 
-// A pattern is in every field: lag takes nothing off it.
+// Every field has the pattern: lag does not reduce it.
 TEST(Lag, LeavesAFixedPatternAlone) {
   const NoiseLaw law{.c = 1e-2, .c_is_fixed_pattern = true};
   const Picture still = flat(40, 40, 0.5F);
@@ -81,7 +81,8 @@ TEST(Smear, BrightTenthLeavesItsShareInItsColumnAlone) {
   EXPECT_EQ(out.planes[0][99 * 20 + 8], 0.0F);
 }
 
-// Ledger: what lay above saturation is halo or drained. Sum out = sum in - (1 - b) excess.
+// Balance: the excess above saturation becomes halo or is drained. Sum out = sum in - (1 - b)
+// excess.
 TEST(Bloom, ExcessIsSpreadOrDrainedToTheLastElectron) {
   const Picture in = point(101, 81, 40, 30, 1000.0F);
   for (const double share : {0.25, 1.0}) {
@@ -91,8 +92,9 @@ TEST(Bloom, ExcessIsSpreadOrDrainedToTheLastElectron) {
   }
 }
 
-// Far from the border the halo is the Gaussian: of 996 at sigma 6, 996 / (2 pi 36) in the middle
-// and exp(-r^2 / 72) of it at r (the discrete Gaussian differs by 1 / (8 sigma^2) = 0.35 % there).
+// Far from the border the halo is the Gaussian. For 996 at sigma 6 it is 996 / (2 pi 36) in the
+// middle and exp(-r^2 / 72) of this at r (the discrete Gaussian differs by 1 / (8 sigma^2) = 0.35 %
+// there).
 TEST(Bloom, HaloOfAPointIsTheGaussianOfItsRadius) {
   const Picture out = bloom_over(point(101, 81, 50, 40, 1000.0F), 4.0, 1.0, 6.0);
   const double middle = 996.0 / (2.0 * 3.14159265358979 * 36.0);
@@ -109,9 +111,9 @@ TEST(Bloom, BelowSaturationNothingChanges) {
   EXPECT_EQ(share_above(flat(3, 3, 0.0F), 4.0), 0.0);
 }
 
-// A quarter of the picture at S = 3, the rest at 0.2: of the sum 0.75 + 0.15 lie 0.25 x 2 above 1.
-// Without bloom all of that is lost; with half of it blooming, the drained half and what is cut
-// again.
+// A quarter of the picture at S = 3, the rest at 0.2: of the sum 0.75 + 0.15, 0.25 x 2 is above 1.
+// Without bloom all of it is lost. With bloom of one half, the drained half and the newly clipped
+// part are lost.
 TEST(Bloom, ReportTellsWhatLayAboveSaturationAndWhatWasLost) {
   CctvCamera camera;
   camera.iris = IrisMode::Fixed;
@@ -132,7 +134,7 @@ TEST(Bloom, ReportTellsWhatLayAboveSaturationAndWhatWasLost) {
     EXPECT_NEAR(bloomed.report.excess_share, 0.5 / 0.9, 1e-5);
     double sum = 0.0;
     for (float v : bloomed.signal.channels[0].values) sum += std::pow(static_cast<double>(v), 2.2);
-    // Kept plus lost is all.
+    // The signal and the lost share add up to 1.
     EXPECT_NEAR(sum / (400.0 * 300.0) / 0.9 + bloomed.report.lost_share, 1.0, 1e-4);
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The laws themselves against other closed forms, without the chain.
+// The laws against other closed forms, without the chain.
 #include "degrade/parts/transfer_law.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ CctvCamera blurred() {
   return camera;
 }
 
-// Discrete Gaussians cascade: their variances add, for the picture and for the noise of the light.
+// Discrete Gaussians cascade: their variances add, for the picture and the noise of the light.
 TEST(TransferLaw, VariancesOfTheTapsAdd) {
   CctvCamera camera = blurred();
   camera.aperture_correction = 0.0;
@@ -57,7 +57,7 @@ TEST(TransferLaw, TapsSumToOneAndAreThoseOfTheTransfer) {
   }
 }
 
-// -3 dB at B whatever the number of columns: 2 MHz are 2 * 52.66 cycles on a line.
+// -3 dB at B for any number of columns: 2 MHz are 2 * 52.66 cycles per line.
 TEST(TransferLaw, BandwidthIsMinusThreeDecibelAtB) {
   CctvCamera camera;
   camera.bandwidth_mhz = 2.0;
@@ -71,7 +71,7 @@ TEST(TransferLaw, BandwidthIsMinusThreeDecibelAtB) {
   EXPECT_EQ(transfer(camera, {}, Travels::Picture, Axis::Across, 0.4), 1.0);
 }
 
-// e^-t I_0(t) and e^-t I_1(t) at t = 0.25: Abramowitz and Stegun's series.
+// e^-t I_0(t) and e^-t I_1(t) at t = 0.25, by the series of Abramowitz and Stegun.
 TEST(TransferLaw, TapsOfTheDiscreteGaussianAreBesselFunctions) {
   const double i0 = 1.0 + 0.015625 + 0.015625 * 0.015625 / 4.0;
   const double i1 = 0.125 * (1.0 + 0.015625 / 2.0 + 0.015625 * 0.015625 / 12.0);
@@ -91,7 +91,7 @@ TEST(TransferLaw, EdgeCoversTheShareOfTheSquare) {
   }
 }
 
-// The profile's derivative has the modulation as its transform.
+// The Fourier transform of the profile's derivative is the modulation.
 TEST(TransferLaw, ProfileAndModulationAreATransformPair) {
   const Filter filter = filter_of(blurred(), {}, Travels::Picture);
   const double angle = 0.1, step = 1e-3;
@@ -138,9 +138,9 @@ TEST(TransferLaw, NoiseOfTheLineByHand) {
   const LineNoise line = line_noise(camera, {});
   EXPECT_NEAR(line.in_time(0.5), (6e-4 + 0.02 * 0.5) / 3.0 + 4e-4, 1e-12);
   EXPECT_NEAR(line.fixed(0.5), 0.01 * 0.25 + 1e-4, 1e-12);
-  // Next line: another field, and no filter reaches it.
+  // The next line belongs to another field, and without filters they are not correlated.
   EXPECT_NEAR(line.total(0.5, 0, 1), 0.0, 1e-12);
-  // With blur it does, and half of the charge is that of the field before.
+  // With blur they are, and half of the charge is from the previous field.
   CctvCamera soft = camera;
   soft.blur_v = 0.5;
   const double h2 = gaussian_tap(std::sqrt(0.5), 0), h1 = gaussian_tap(std::sqrt(0.5), 1);
@@ -148,7 +148,7 @@ TEST(TransferLaw, NoiseOfTheLineByHand) {
   EXPECT_NEAR(next.in_time(0.5, 0, 0), (6e-4 + 0.01) / 3.0 * h2 + 4e-4, 1e-9);
   EXPECT_NEAR(next.in_time(0.5, 0, 1), 0.5 * (6e-4 + 0.01) / 3.0 * h1, 1e-9);
   EXPECT_NEAR(next.fixed(0.5, 0, 1), 0.01 * 0.25 * h1, 1e-9);
-  camera.interlace = false;  // a frame lasts two fields: 0.25 stays, 0.75 / 1.25 of the variance
+  camera.interlace = false;  // a frame lasts two fields: 0.25 remains, 0.75 / 1.25 of the variance
   EXPECT_NEAR(line_noise(camera, {}).in_time(0.5), 0.6 * (6e-4 + 0.01) + 4e-4, 1e-12);
 }
 

@@ -69,7 +69,7 @@ TEST(RangeSensorFile, WhatIsWrongIsNamedWithItsPlaceAndWhatIsAllowed) {
   EXPECT_TRUE(holds(message, "wrong kind") && holds(message, "a number")) << message;
   message = refusal(scene_with({{"min_range_m", 4.0}, {"max_range_m", 3.0}}));
   EXPECT_TRUE(holds(message, "min_range_m = 4 is not below max_range_m = 3")) << message;
-  EXPECT_EQ(refusal(scene_with({{"min_range_m", 4.0}})), "accepted");  // max_range_m = 0: any
+  EXPECT_EQ(refusal(scene_with({{"min_range_m", 4.0}})), "accepted");  // max_range_m = 0: no limit
 }
 
 TEST(RangeSensorFile, CameraThatNamesAnUnknownSensorIsRefused) {

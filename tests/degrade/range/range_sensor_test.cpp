@@ -14,7 +14,7 @@
 namespace earthshine::degrade {
 namespace {
 
-// Layers of a sensor at the origin. Pixel by pixel: what lies at `place` with normal `normal`.
+// Layers of a sensor at the origin, pixel by pixel: a surface at `place` with normal `normal`.
 class View {
  public:
   View(int width, int height) : image{width, height, {}} {
@@ -36,7 +36,7 @@ class View {
   base::Image image;
 };
 
-// A wall that faces the sensor everywhere at the same distance: the inside of a sphere.
+// A wall that faces the sensor at equal distance everywhere: the inside of a sphere.
 View sphere(int width, int height, double radius_m, double albedo = 0.5) {
   View view(width, height);
   for (std::size_t i = 0; i < view.image.pixel_count(); ++i) {
@@ -72,7 +72,7 @@ TEST(RangeSensor, WithoutFaultsReportsTheExactRange) {
   EXPECT_EQ(sensed.report.returned, 1200U);
 }
 
-// Errors are Gaussian with the law's sigma: their mean has the standard error sigma / sqrt(n),
+// Errors are Gaussian with the law's sigma: the standard error of their mean is sigma / sqrt(n), of
 // their deviation sigma / sqrt(2 n).
 TEST(RangeSensor, NoiseHasMeanZeroAndTheStatedDeviation) {
   RangeSensor sensor;
@@ -89,8 +89,8 @@ TEST(RangeSensor, NoiseHasMeanZeroAndTheStatedDeviation) {
   }
 }
 
-// Ranges spread over many steps: the error of rounding is uniform in one step q, deviation
-// q / sqrt(12), whose own standard error is that times sqrt(1/5 / n) (fourth moment 9/5).
+// Ranges over many steps: the rounding error is uniform in one step q, with the deviation q /
+// sqrt(12). Its relative standard error is sqrt(1/5 / n) (fourth moment 9/5).
 TEST(RangeSensor, QuantisationErrorIsUniformInOneStep) {
   constexpr double q = 0.01;
   RangeSensor sensor;
@@ -115,7 +115,7 @@ TEST(RangeSensor, QuantisationErrorIsUniformInOneStep) {
   EXPECT_LE(worst, q / 2 + 1e-6);
 }
 
-// A plate turned about the ray's foot by theta is seen at incidence theta.
+// A plate tilted by theta about the end of the ray has the incidence theta.
 TEST(RangeSensor, TiltedPlateDropsOutBeyondTheLargestIncidence) {
   RangeSensor sensor;
   sensor.max_incidence_deg = 70.0;
@@ -145,7 +145,7 @@ TEST(RangeSensor, DimReturnsAreLostBeyondTheirDistance) {
   for (std::size_t i = 0; i < 100; ++i) {
     EXPECT_EQ(sensed.image.find("valid")->values[i], i < 50 ? 1.0F : 0.0F) << i;
   }
-  // At 60 degrees of incidence the same plate is lost at 5 sqrt(cos 60) = 3.54 m.
+  // At 60 degrees of incidence the same plate is too dim from 5 sqrt(cos 60) = 3.54 m on.
   const Vec3 tilted(std::sin(base::radians(60.0)), 0, -std::cos(base::radians(60.0)));
   View plates(2, 1);
   plates.put(0, Vec3(0, 0, 3.53), tilted, 0.5);
@@ -157,7 +157,7 @@ TEST(RangeSensor, SkyAndWhatIsTooNearOrTooFarGiveNoReturn) {
   RangeSensor sensor;
   sensor.min_range_m = 1.0;
   sensor.max_range_m = 5.0;
-  View view(4, 1);  // pixel 0 stays sky
+  View view(4, 1);  // pixel 0 is sky
   view.put(1, Vec3(0, 0, 0.9), Vec3(0, 0, -1));
   view.put(2, Vec3(0, 0, 3.0), Vec3(0, 0, -1));
   view.put(3, Vec3(0, 0, 5.1), Vec3(0, 0, -1));
@@ -168,7 +168,7 @@ TEST(RangeSensor, SkyAndWhatIsTooNearOrTooFarGiveNoReturn) {
   EXPECT_EQ(sensed.report.out_of_range, 2U);
 }
 
-// A share p of n readings has the standard error sqrt(p (1 - p) / n).
+// A measured share p of n readings has the standard error sqrt(p (1 - p) / n).
 TEST(RangeSensor, DropoutLosesTheStatedShare) {
   RangeSensor sensor;
   sensor.dropout = 0.1;

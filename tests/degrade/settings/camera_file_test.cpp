@@ -89,7 +89,7 @@ TEST(CameraFile, ValueOutOfRangeNamesTheRange) {
   EXPECT_TRUE(holds(refusal(scene_with({{"bits", 7.5}})), "whole number"));
 }
 
-// A Gaussian of 0.01 MHz spreads over a quarter of a line; one of 1e-6 would have millions of taps.
+// A Gaussian of 0.01 MHz blurs over a quarter of a line; one of 1e-6 would have millions of taps.
 TEST(CameraFile, BandwidthLeavesSomethingOfALine) {
   EXPECT_EQ(refusal(scene_with({{"bandwidth_mhz", 0.01}})), "accepted");
   for (const double value : {1e-6, 1e-300}) {
@@ -117,8 +117,7 @@ TEST(CameraFile, SettingWithoutEffectIsRefused) {
   EXPECT_EQ(refusal(scene_with({{"noise_a", 0.01}, {"noise", std::string("law")}})), "accepted");
 }
 
-// The words of one form of the noise beside those of another: the reader cannot know which is
-// meant.
+// Settings of two forms of noise are ambiguous.
 TEST(CameraFile, NoiseInTwoFormsIsRefused) {
   const std::string message = refusal(
       scene_with({{"noise", std::string("spec")}, {"snr_db", 40.0}, {"read_electrons", 5.0}}));

@@ -54,7 +54,7 @@ std::vector<std::string> keys_of(const std::vector<SettingSource>& sources) {
   return keys;
 }
 
-// Each setting in use has one source, in the order of the fields, and nothing else has.
+// Each setting in use has one source, in the order of the fields; other settings have none.
 TEST(Presets, EverySettingInUseHasItsSourceAndNoOther) {
   for (const Preset& preset : presets()) {
     std::vector<std::string> camera, monitor;
@@ -69,7 +69,7 @@ TEST(Presets, EverySettingInUseHasItsSourceAndNoOther) {
   }
 }
 
-// A reader can tell what was measured from what was guessed.
+// A reader must be able to distinguish measurements from estimates.
 TEST(Presets, EverySourceSaysWhatKindItIs) {
   const auto known = [](const std::string& source) {
     for (const std::string_view kind : {"[1990] ", "[GCTA] ", "[IUCr] ", "[SCOM] ", "[shutref] ",
@@ -88,8 +88,8 @@ TEST(Presets, EverySourceSaysWhatKindItIs) {
   }
 }
 
-// The report speaks of neither a black level nor a lit room: what comes through is the picture's
-// light alone, on 300 x 400 points with a Gaussian spread.
+// The report mentions neither a black level nor room light: only the picture's light counts, on 300
+// x 400 points with a Gaussian spread.
 TEST(Presets, ReportOf1990HasItsOwnMonitor) {
   const Monitor& monitor = find_preset("report-1990")->monitor;
   EXPECT_EQ(monitor.rows, 300);
@@ -114,7 +114,7 @@ TEST(Presets, TubeHas28DecibelsAtWhiteAndTheChip40) {
   EXPECT_NEAR(noise_figures(find_preset("ccd-colour")->camera).floor_db, 50.0, 0.6);
 }
 
-// 3 x 3 resels of 1000 times white leave 9 (1000 - 4) to the surround, as a Gaussian of 15 resels:
+// 3 x 3 resels of 1000 times white spread 9 (1000 - 4) as a Gaussian of 15 resels:
 // 8964 / (2 pi 15^2) = 6.34 in its middle, and white at 15 sqrt(2 ln 6.34) = 28.8 resels, a tenth
 // of the picture's height.
 TEST(Presets, TubeBloomsToATenthOfTheHeight) {
@@ -130,15 +130,15 @@ TEST(Presets, TubeBloomsToATenthOfTheHeight) {
   EXPECT_NEAR(reach, 29, 1);
 }
 
-// 0.42^3 = 0.074: 7 % after three fields. (1 - 0.1)^30 = 0.042 of the iris' way left after a
-// second.
+// 0.42^3 = 0.074: 7 % after three fields. (1 - 0.1)^30 = 0.042: share of the iris' distance that
+// remains after a second.
 TEST(Presets, TubeLagsAndItsIrisTravels) {
   const CctvCamera camera = find_preset("sit-monochrome")->camera;
   EXPECT_NEAR(std::pow(camera.lag, 3), 0.07, 0.005);
   EXPECT_LT(std::pow(1.0 - camera.iris_rate, 30), 0.05);
 }
 
-// Measured values of the bay: 31 cd/m^2 under the lamps takes f/31, a sunlit grey of 21 200 cd/m^2
+// Measured in the bay: 31 cd/m^2 under the lamps needs f/31, a sunlit grey of 21 200 cd/m^2 needs
 // f/815 for white.
 TEST(Presets, TubeStopsDownForTheBayAsComputed) {
   CctvCamera camera = find_preset("sit-monochrome")->camera;
@@ -176,7 +176,7 @@ struct InTheDocument {
   }
 };
 
-// "0.8 e": the value, and what kind of source it has: its tag, c for computed, e for estimate.
+// "0.8 e": the value and the kind of its source: its tag, c for computed, e for estimate.
 std::string cell(const std::string& value, const std::string& source) {
   if (source.starts_with("none: ")) return value;
   if (source.starts_with("computed: ")) return value + " c";
@@ -195,7 +195,7 @@ std::string value_text(const Value& value) {
   }
 }
 
-// Row by row for `key | cells`, keys in the order of the fields; keys that no preset uses left out.
+// Rows of `key | cells`, keys in the order of the fields, without keys that no preset uses.
 class Table {
  public:
   template <class Settings, class Visit>
@@ -245,7 +245,7 @@ TEST(Presets, DocumentListsEveryFieldStageAndPreset) {
   }
 }
 
-// What the message prints belongs into the document.
+// The document must contain the text that the message prints.
 TEST(Presets, DocumentHasEveryValueAndItsKindOfSource) {
   const std::string text = document();
   Table camera, monitor;

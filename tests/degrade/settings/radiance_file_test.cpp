@@ -12,7 +12,7 @@
 namespace earthshine::degrade {
 namespace {
 
-// A colour picture of a size that no grid divides, with some negative light.
+// A colour picture with some negative light; no grid divides its size.
 base::Image scattered(int width, int height) {
   base::Image image = base::make_rgb_image(width, height);
   for (std::size_t i = 0; i < image.pixel_count(); ++i) {
@@ -30,7 +30,7 @@ RadianceFile read(const std::filesystem::path& path, const degrade::Setup& setup
   return read_radiance(reader, setup, most_pixels);
 }
 
-// The same sums in the same order: the chain makes the same bytes of the averages as of the
+// The same sums in the same order: the chain gives the same bytes for the averages as for the
 // picture.
 TEST(RadianceFile, StripsGiveTheBytesOfTheWholePicture) {
   const test::TemporaryFolder folder;

@@ -35,7 +35,7 @@ TEST(AreaAverage, IntegerRatioIsTheBlockMean) {
   Picture in = flat(6, 4, 0.0F);
   std::iota(in.planes[0].begin(), in.planes[0].end(), 1.0F);
   const Picture out = apply(in, area_average(6, 3), area_average(4, 2));
-  // Block of 1, 2, 7, 8: mean 4.5; blocks lie 2 apart along and 12 across.
+  // Block of 1, 2, 7, 8: mean 4.5. Blocks differ by 2 along and by 12 across.
   EXPECT_EQ(out.planes[0], (Plane{4.5F, 6.5F, 8.5F, 16.5F, 18.5F, 20.5F}));
 }
 
@@ -49,8 +49,8 @@ TEST(AreaAverage, TotalLightIsKeptAtAnyRatio) {
   }
 }
 
-// Half-pixel centres: the centroid of pixel i of n lies at (i + 1/2) / n on both grids.
-// Exact where pixels divide pixels; one shared by two outputs may move by an eighth of an output.
+// Half-pixel centres: the centroid of pixel i of n is at (i + 1/2) / n on both grids. Exact if the
+// sizes divide; a pixel shared by two outputs may move by an eighth of an output.
 TEST(AreaAverage, ImpulseKeepsItsCentroidUpTheScale) {
   for (const int at : {0, 7, 39}) {
     Picture in = flat(40, 1, 0.0F);
@@ -65,9 +65,9 @@ TEST(AreaAverage, ImpulseKeepsItsCentroidUpTheScale) {
   }
 }
 
-// A mean over w pixels answers frequency f with sin(pi w f) / (w sin(pi f)): at 1.5 times the
-// Nyquist frequency of the output, f = 0.75 / w with w = 16, that is 0.30120 (continuous: sinc 0.75
-// = 0.3001).
+// A mean over w pixels has the response sin(pi w f) / (w sin(pi f)) at frequency f. At 1.5 times
+// the Nyquist frequency of the output, f = 0.75 / w with w = 16, this is 0.30120 (continuous:
+// sinc 0.75 = 0.3001).
 TEST(AreaAverage, FrequenciesAboveNyquistAreAttenuatedAsTheBoxSays) {
   constexpr int size = 3200, width = 16;
   Picture in = flat(size, 1, 0.0F);
