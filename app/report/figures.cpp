@@ -18,7 +18,7 @@ constexpr std::size_t most_open = 40;
 
 struct Columns {
   std::vector<std::size_t> sight, signal;  // indices into sight_columns, signal_columns
-  bool groups = true;                      // lit by, light by
+  bool groups = true;                      // lit by, light by, decided by
 };
 
 std::string head(std::span<const FigureColumn> all, const std::vector<std::size_t>& shown,
@@ -60,9 +60,11 @@ std::string sight_row(const StudyResults& study, std::size_t index, const Column
             shares_text(result.light_by, Form::Plain) + "<td class=t>" +
             shares_text(shares_of(result.light_from), Form::Percent);
   }
-  const std::string decides = deciding_figure(result);
-  html += "<td class=t>" + (decides.empty() ? dash : decides) + "<td class=t>" +
-          (result.why.empty() ? dash : escaped(result.why));
+  if (columns.groups) {
+    const std::string decides = deciding_figure(result);
+    html += "<td class=t>" + (decides.empty() ? dash : decides);
+  }
+  html += "<td class=t>" + (result.why.empty() ? dash : escaped(result.why));
   return html + "\n";
 }
 
@@ -101,9 +103,9 @@ std::string tables(const StudyResults& study, const Block& block, const Columns&
   if (columns.groups) {
     sight +=
         "<th scope=\"col\">lit by</th><th scope=\"col\">light by, cd/m²</th>"
-        "<th scope=\"col\">comes last from, %</th>";
+        "<th scope=\"col\">comes last from, %</th><th scope=\"col\">decided by</th>";
   }
-  sight += "<th scope=\"col\">decided by</th><th scope=\"col\">why not</th>";
+  sight += "<th scope=\"col\">why not</th>";
   sight += "</tr></thead>\n<tbody>\n";
   std::string signal;
   for (const std::size_t k : results) {

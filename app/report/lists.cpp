@@ -68,10 +68,7 @@ std::string conditions_table(const StudyResults& study) {
   }
   if (rows.empty()) return "";
   // On paper the summary's columns say it.
-  constexpr std::size_t most_conditions_printed = 40;
-  const char* const kind =
-      study.conditions.size() > most_conditions_printed ? "rows unprinted" : "rows";
-  return fmt::format("<details class=\"{}\"><summary>", kind) +
+  return "<details class=\"rows unprinted\"><summary>" +
          counted(study.conditions.size(), "condition", "conditions") + "</summary>\n" +
          table("Conditions",
                {"Condition", "Scene", "Lamps", "Position, °", "Time, s", "Phase", "Sun free, %",
@@ -114,6 +111,20 @@ std::string key_values(const std::string& caption, const std::string& key, const
     rows += "<tr><th scope=row>" + escaped(name) + "<td class=t>" + value_html(value) + "\n";
   }
   return rows.empty() ? "" : table(caption, {key, "Value"}, rows);
+}
+
+// "picture s1 A" with the scene's name; without it in a study of one scene.
+std::string stage_of(const StudyResults& study, const StudyCost& cost) {
+  std::string stage = cost.stage + " ";
+  for (std::size_t k = 0; k < study.scenes.size(); ++k) {
+    const std::string id = " " + study.scenes[k].id + " ";
+    const std::size_t at = stage.find(id);
+    if (at == std::string::npos) continue;
+    stage.replace(at, id.size(), study.scenes.size() > 1 ? " " + scene_title(study, k) + " " : " ");
+    break;
+  }
+  stage.pop_back();
+  return stage;
 }
 
 }  // namespace
@@ -164,7 +175,7 @@ std::string setup_html(const StudyResults& study) {
 std::string provenance_html(const StudyResults& study) {
   std::string costs;
   for (const StudyCost& cost : study.costs) {
-    costs += fmt::format("<tr><th scope=row>{}<td>{}<td>{}\n", escaped(cost.stage),
+    costs += fmt::format("<tr><th scope=row>{}<td>{}<td>{}\n", escaped(stage_of(study, cost)),
                          figure(cost.seconds), cost.rays ? fmt::format("{}", *cost.rays) : dash);
   }
   return key_values("Provenance", "Of", study.provenance) +

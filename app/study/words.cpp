@@ -75,22 +75,21 @@ std::string deciding_figure(const TargetFindings& found) {
     threshold = sight.eye->threshold.value_or(NAN);
     cycles = sight.eye->cycles;
   }
-  // Where the screen resolves a cycle its contrast is above the threshold in parts.
-  if (unseen && !(screen && cycles > 0.0)) {
-    const bool faint = weber < threshold, noisy = snr_d < options.even_chance_snr;
-    if (noisy && !(faint && weber / threshold < snr_d / options.even_chance_snr)) {
-      return beside("signal to noise", snr_d, "threshold", options.even_chance_snr);
-    }
-    if (faint) {
-      return beside(screen ? "contrast on the monitor" : "contrast to the eye", weber, "threshold",
-                    threshold);
-    }
-  }
-  if (std::isnan(cycles)) return "";
   const double needed = unseen                               ? options.cycles.detect
                         : sight.verdict == Verdict::Detected ? options.cycles.recognise
                                                              : options.cycles.identify;
-  return beside("cycles across it", cycles, "needed", needed);
+  const bool small = cycles < needed, faint = weber < threshold,
+             noisy = snr_d < options.even_chance_snr;
+  // Where the screen resolves a cycle its contrast is above the threshold in parts.
+  const bool seen_in_parts = screen && cycles > 0.0;
+  if ((faint || noisy) && !(small && seen_in_parts)) {
+    if (noisy && !(faint && weber / threshold < snr_d / options.even_chance_snr)) {
+      return beside("signal to noise", snr_d, "threshold", options.even_chance_snr);
+    }
+    return beside(screen ? "contrast on the monitor" : "contrast to the eye", weber, "threshold",
+                  threshold);
+  }
+  return small ? beside("cycles across it", cycles, "needed", needed) : "";
 }
 
 }  // namespace earthshine::app

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // On a phone: a table that does not fit becomes cards, one for each row, and a long section is
-// folded, so that the sections below it stay within reach.
+// folded, so that the sections below it stay within reach; the first one stays open.
 
 const narrow = matchMedia("(max-width: 40rem)");
 const longest = 2400; // CSS pixels
@@ -26,7 +26,7 @@ const makeCards = () => {
 const foldLongSections = () => {
   if (!narrow.matches) return;
   for (const section of document.querySelectorAll("main > section")) {
-    if (section.offsetHeight <= longest) continue;
+    if (section.id === "short" || section.offsetHeight <= longest) continue;
     const fold = document.createElement("details");
     const summary = document.createElement("summary");
     const [heading, ...content] = section.children;
