@@ -149,7 +149,8 @@ std::string figures_html(const StudyResults& study) {
         study.results.size());
   }
   html += fmt::format(
-      "<p class=\"paper\">On paper these tables are left out; results.csv has all {} results.</p>\n",
+      "<p class=\"paper\">On paper these tables are left out; results.csv has all {} "
+      "results.</p>\n",
       study.results.size());
   for (const Block& block : blocks_of(study)) {
     html += tables(study, block, columns, study.results.size() <= most_open);

@@ -60,9 +60,9 @@ std::string conditions_table(const StudyResults& study) {
     rows += fmt::format(
         "<tr><th scope=row>{}<td class=t>{}<td class=t>{}<td>{}<td>{}<td>{}<td>{}<td "
         "class=t>{}<td>{}\n",
-        text_or_dash(condition.name), escaped(scene_title(study, condition.scene)), text_or_dash(condition.lamps),
-        figure(condition.position_deg), figure(condition.time_s, Form::Count),
-        condition.phase.empty() ? dash : condition.phase,
+        text_or_dash(condition.name), escaped(scene_title(study, condition.scene)),
+        text_or_dash(condition.lamps), figure(condition.position_deg),
+        figure(condition.time_s, Form::Count), condition.phase.empty() ? dash : condition.phase,
         figure(condition.sun_share, Form::Percent), factors_text(condition.factors),
         figure(condition.earth_error, Form::Percent));
   }
@@ -152,9 +152,9 @@ std::string answers_html(const StudyResults& study) {
       fact("detected at", degrees(arcs_text(answer.arcs_deg)));
       const std::string at =
           answer.darkest_deg ? " at " + figure(answer.darkest_deg) + "°, where it is darkest" : "";
-      fact("this camera needs",
-           answer.least_factor ? scenes::percent(*answer.least_factor) + " of these lamps" + at
-                               : "");
+      fact("this camera needs", answer.least_factor
+                                    ? scenes::percent(*answer.least_factor) + " of these lamps" + at
+                                    : "");
     }
     if (!facts.empty()) html += "<dl>" + facts + "</dl>";
     html += "</li>\n";

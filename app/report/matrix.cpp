@@ -101,7 +101,8 @@ std::string table(const StudyResults& study, const Block& block) {
   const ThumbnailOf thumbnails = thumbnails_of(study);
   const std::string title = block_title(study, block);
   std::string html = fmt::format(
-      "<div class=\"scroll\" role=\"region\" aria-label=\"Summary: {}\" tabindex=\"0\"{}>\n<table class=\"matrix{}\">\n<caption>{}</caption>\n"
+      "<div class=\"scroll\" role=\"region\" aria-label=\"Summary: {}\" tabindex=\"0\"{}>\n<table "
+      "class=\"matrix{}\">\n<caption>{}</caption>\n"
       "<colgroup><col class=\"name\"><col class=\"name\"><col class=\"seen\"><col "
       "span=\"{}\"></colgroup>\n"
       "<thead>\n",

@@ -40,12 +40,13 @@ std::string axis(const BayAxis& bay) {
   const Point at = on_orbit(bay.position_deg, orbit_radius);
   const double dx = arrow * (-bay.zenith * std::cos(phi) + bay.forward * std::sin(phi));
   const double dy = arrow * (bay.zenith * std::sin(phi) + bay.forward * std::cos(phi));
-  std::string svg = fmt::format("<circle class=\"craft\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\"/>",
-                                at.x, at.y);
+  std::string svg =
+      fmt::format("<circle class=\"craft\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\"/>", at.x, at.y);
   if (std::hypot(dx, dy) > 0.3 * arrow) {
-    return svg + fmt::format("<path class=\"bay\" d=\"M{:.1f} {:.1f}l{:.1f} {:.1f}\" "
-                             "marker-end=\"url(#bay-tip)\"/>",
-                             at.x, at.y, dx, dy);
+    return svg + fmt::format(
+                     "<path class=\"bay\" d=\"M{:.1f} {:.1f}l{:.1f} {:.1f}\" "
+                     "marker-end=\"url(#bay-tip)\"/>",
+                     at.x, at.y, dx, dy);
   }
   if (bay.normal > 0.0) {
     return svg +
@@ -95,7 +96,8 @@ std::string attitude_words(const std::string& attitude) {
   if (attitude == "bay-to-earth") return "the bay faces the Earth, nose forward";
   if (attitude == "bay-to-space") return "the bay faces away from the Earth, nose forward";
   if (attitude == "tail-down") return "the tail points to the Earth, the bay faces forward";
-  if (attitude == "bay-to-sun") return "the bay faces the Sun, the nose points to the orbit’s north";
+  if (attitude == "bay-to-sun")
+    return "the bay faces the Sun, the nose points to the orbit’s north";
   return attitude == "table" ? "from a table of attitudes" : escaped(attitude);
 }
 
@@ -106,9 +108,11 @@ std::string in_words(const OrbitEntry& orbit) {
       "morning terminator.</p>\n";
   text += "<p><strong>Orbit</strong>: circular, altitude " + figure(orbit.altitude_km) + " km";
   if (orbit.period_s) text += ", one turn in " + figure(*orbit.period_s / 60.0) + " min";
-  text += "; beta angle (the Sun’s height over the orbit’s plane) " + figure(orbit.beta_deg) + "°. ";
-  text += orbit.umbra_deg.empty() ? "The Earth never hides all of the Sun."
-                                  : "The Earth hides the Sun at " + degrees(arcs_text(orbit.umbra_deg)) + ".";
+  text +=
+      "; beta angle (the Sun’s height over the orbit’s plane) " + figure(orbit.beta_deg) + "°. ";
+  text += orbit.umbra_deg.empty()
+              ? "The Earth never hides all of the Sun."
+              : "The Earth hides the Sun at " + degrees(arcs_text(orbit.umbra_deg)) + ".";
   text += "</p>\n<p><strong>Attitude</strong>: ";
   if (orbit.inertial_as.empty()) {
     text += attitude_words(orbit.attitude);

@@ -56,7 +56,8 @@ class Album {
   Album(const StudyResults& study, const fs::path& folder) : folder_(folder) {
     for (const FigureEntry& picture : study.figures) add(picture);
     for (const PairEntry& pair : study.pairs) {
-      for (const PictureEntry* side : {&pair.left, &pair.right}) add({*side, {}, {}, false, {}, {}, {}});
+      for (const PictureEntry* side : {&pair.left, &pair.right})
+        add({*side, {}, {}, false, {}, {}, {}});
     }
     for (const PairEntry& pair : study.pairs) {
       for (const PictureEntry* side : {&pair.left, &pair.right}) pictures_[of(*side)].paired = true;
@@ -79,9 +80,8 @@ class Album {
       if (twice) {
         html += image(folder_, picture.same_file, picture.caption + ", same exposure", "same");
       }
-      html += "<figcaption>" + escaped(picture.caption) +
-              exposure(picture.white_cd_m2, "own") + exposure(picture.same_white_cd_m2, "same") +
-              "</figcaption></figure>\n";
+      html += "<figcaption>" + escaped(picture.caption) + exposure(picture.white_cd_m2, "own") +
+              exposure(picture.same_white_cd_m2, "same") + "</figcaption></figure>\n";
     }
     return html;
   }
@@ -120,8 +120,8 @@ std::string pairs_html(const StudyResults& study, const Album& album) {
     html += fmt::format(
         "<li data-left=\"i{}\" data-right=\"i{}\"><strong>{}</strong>: <span>{}</span>, "
         "<span>{}</span></li>\n",
-        album.of(pair.left), album.of(pair.right), escaped(pair.title),
-        escaped(pair.left.caption), escaped(pair.right.caption));
+        album.of(pair.left), album.of(pair.right), escaped(pair.title), escaped(pair.left.caption),
+        escaped(pair.right.caption));
   }
   return html + "</ul>\n";
 }

@@ -106,9 +106,10 @@ std::string targets_html(const StudyResults& study) {
   for (std::size_t target = 0; target < study.targets.size(); ++target) {
     const std::string lines = timelines_html(study, target),
                       why = ledger(study, target, shown, left_out);
-    html += fmt::format("<section class=\"target\" data-target=\"{0}\">\n<h3>{0}</h3>\n{1}{2}</section>\n",
-                        escaped(study.targets[target]), lines,
-                        why.empty() ? "<p>Identified under every condition.</p>\n" : why);
+    html += fmt::format(
+        "<section class=\"target\" data-target=\"{0}\">\n<h3>{0}</h3>\n{1}{2}</section>\n",
+        escaped(study.targets[target]), lines,
+        why.empty() ? "<p>Identified under every condition.</p>\n" : why);
   }
   std::string head =
       "<p>Probabilities of detection, recognition and identification, the target’s luminance, and "
@@ -116,7 +117,8 @@ std::string targets_html(const StudyResults& study) {
       "Conditions with the same causes share a row. A probability after <em>without it</em> is "
       "that of detection were this cause alone taken away.</p>\n";
   if (left_out > 0) {
-    head += fmt::format("<p>{} of {} rows; study.json has the rest.</p>\n", shown, shown + left_out);
+    head +=
+        fmt::format("<p>{} of {} rows; study.json has the rest.</p>\n", shown, shown + left_out);
   }
   return head +
          fmt::format("<div class=\"targets{}\">\n",

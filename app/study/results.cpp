@@ -297,9 +297,8 @@ std::vector<Timeline> timelines_of(const StudyResults& study) {
       line->identify.push_back(value(chance_of<&Probability::identify>));
       line->luminance.push_back(value(sight_of<&Sight::luminance>));
       line->weber.push_back(value(sight_of<&Sight::weber>));
-      line->verdict.push_back(found == results.end()
-                                  ? std::nullopt
-                                  : std::optional(found->second->sight.verdict));
+      line->verdict.push_back(found == results.end() ? std::nullopt
+                                                     : std::optional(found->second->sight.verdict));
     }
   }
   std::erase_if(lines, [](const Timeline& line) { return line.detect.size() < 2; });

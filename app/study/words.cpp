@@ -33,8 +33,9 @@ std::string scene_title(const StudyResults& study, std::size_t scene) {
   const SceneEntry& entry = study.scenes[scene];
   const std::string file = std::filesystem::path(entry.path).filename().string();
   if (entry.name.empty()) return file.empty() ? entry.id : file;
-  const auto same = std::count_if(study.scenes.begin(), study.scenes.end(),
-                                  [&](const SceneEntry& other) { return other.name == entry.name; });
+  const auto same =
+      std::count_if(study.scenes.begin(), study.scenes.end(),
+                    [&](const SceneEntry& other) { return other.name == entry.name; });
   return same > 1 ? fmt::format("{} ({})", entry.name, file.empty() ? entry.id : file) : entry.name;
 }
 

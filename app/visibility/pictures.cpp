@@ -219,8 +219,13 @@ void draw_pictures(const PictureTask& task, const studies::BasisView* view,
   for (const PictureWish* wish : own_wishes(task)) {
     if (view != nullptr && !is_there(task, *wish)) draw(task, *wish, *view);
     const std::string stem = file_of(task.study, *wish);
-    figures.push_back(
-        {{stem + ".png", wish->title}, wish->name, stem + ".exr", !by_cctv(wish->shows), {}, {}, {}});
+    figures.push_back({{stem + ".png", wish->title},
+                       wish->name,
+                       stem + ".exr",
+                       !by_cctv(wish->shows),
+                       {},
+                       {},
+                       {}});
   }
 }
 

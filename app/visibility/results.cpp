@@ -144,7 +144,8 @@ StudyResults begin_results(const studies::StudyFile& study,
   Json digests = Json::object();
   for (const StudyPart* part : parts) {
     const std::size_t scene = results.scenes.size();
-    results.scenes.push_back({part->id, part->loaded.scene.name, part->path, {}, orbit_entry(part->loaded.scene)});
+    results.scenes.push_back(
+        {part->id, part->loaded.scene.name, part->path, {}, orbit_entry(part->loaded.scene)});
     digests[part->id] = scene_cache_key(part->loaded);
     for (const std::string& name : part->targets) {
       if (target_number(results, name) == results.targets.size()) results.targets.push_back(name);

@@ -21,7 +21,7 @@ inline constexpr const char* study_tone_help =
 struct StudyTask {
   studies::StudyFile study;
   std::string folder;
-  std::string command;                    // what was called, for the report
+  std::string command;   // what was called, for the report
   ToneChoice tone = {};  // of the clean pictures
   PartCall part = {};
 };

@@ -14,7 +14,7 @@ namespace earthshine::app {
 namespace {
 
 constexpr int widest_px = 160;
-// Of a camera with no more conditions each one in which a target in view is missed is pictured.
+// Of a camera with no more conditions each one in which a target that is not hidden is missed is pictured.
 constexpr std::size_t most_pictured = 36;
 
 double degrees_apart(double a, double b) { return std::abs(std::remainder(a - b, 360.0)); }
@@ -123,7 +123,7 @@ double draw_small(const PictureTask& task, const studies::BasisView& view, std::
 bool misses_one(const std::vector<TargetFindings>& targets) {
   return std::any_of(targets.begin(), targets.end(), [](const TargetFindings& target) {
     const studies::Verdict verdict = target.sight.verdict;
-    return verdict >= studies::Verdict::Doubtful && verdict != studies::Verdict::OutOfView;
+    return verdict == studies::Verdict::Doubtful || verdict == studies::Verdict::NotSeen;
   });
 }
 

@@ -12,7 +12,7 @@ namespace earthshine::app {
 
 // Of one camera: under each lamp setting the places nearest to noon and to midnight, the first one,
 // each at which the verdict on a target is another than at the place before, and, of a camera with
-// few conditions, each at which a target in view is missed; of a study without an orbit all
+// few conditions, each at which a target that is not hidden is missed; of a study without an orbit all
 // conditions.
 [[nodiscard]] std::vector<std::size_t> pictured_conditions(const StudyPart& part,
                                                            const Judged& judged);

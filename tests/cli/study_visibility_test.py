@@ -13,14 +13,14 @@ class Orbit(Case):
 
     def check_thumbnails(self, study):
         """In small: the first place, midnight, each place at which a verdict is another than before, and each at which a target
-        in view is missed."""
+        that is not hidden is missed."""
         wanted = set()
         for camera in {result["camera"] for result in study["results"]}:
             before = None
             for condition in study["conditions"]:
                 verdicts = [result["verdict"] for result in study["results"]
                             if (result["camera"], result["condition"]) == (camera, condition["id"])]
-                missed = {"doubtful", "not-seen", "hidden"} & set(verdicts)
+                missed = {"doubtful", "not-seen"} & set(verdicts)
                 if condition["position_deg"] in (0, 180) or verdicts != before or missed:
                     wanted.add((camera, condition["id"]))
                 before = verdicts
