@@ -12,7 +12,6 @@ namespace earthshine::app {
 namespace {
 
 constexpr int largest_edge_px = 16384;
-constexpr double white_of_ev0 = 78.0 / (100.0 * 0.65);  // cd/m^2
 
 // Number and unit: "12EV"; nothing where there is no number.
 std::optional<std::pair<double, std::string>> measure_of(const std::string& text) {

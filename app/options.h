@@ -34,7 +34,8 @@ struct ToneChoice {
 // The luminance of white of these pictures together. Needs a shared white.
 [[nodiscard]] double white_of(const ToneChoice& tone,
                               const std::vector<const base::Image*>& pictures);
-inline constexpr double usual_percent = 99.5;  // of --exposure auto
+inline constexpr double usual_percent = 99.5;                  // of --exposure auto
+inline constexpr double white_of_ev0 = 78.0 / (100.0 * 0.65);  // cd/m^2, at ISO 100
 // --exposure own, auto, auto:PERCENT, EV (of ISO 100: white at 1.2 2^EV cd/m^2, by H = 78 lx s /
 // ISO for white and H = 0.65 L t / N^2, ISO 12232) or cd/m2; --curve shoulder or clip. `more`: what
 // else an option's help says.

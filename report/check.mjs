@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// node check.mjs REPORT.html PLAIN.html HOSTILE.html [FOLDER]: opens the pages in headless Chromium as a reader
+// node check.mjs REPORT.html PLAIN.html FEW.html MANY.html TWO.html HOSTILE.html [FOLDER]: opens the pages in headless Chromium as a reader
 // would, by keyboard too, and puts screenshots and a PDF into FOLDER.
 // Exit code 0 all well, 1 something is wrong, 77 there is no browser or no node_modules.
 import { existsSync, mkdirSync } from "node:fs";
@@ -23,7 +23,7 @@ try {
 }
 const axePath = createRequire(import.meta.url).resolve("axe-core/axe.min.js");
 
-const [page_file, plain_file, hostile_file, folder] = process.argv.slice(2);
+const [page_file, plain_file, few_file, many_file, two_file, hostile_file, folder] = process.argv.slice(2);
 if (folder) mkdirSync(folder, { recursive: true });
 const kept = (name) => (folder ? join(folder, name) : undefined);
 let faults = 0;
@@ -203,7 +203,7 @@ const checkPage = async () => {
   await checkFilter(page);
   const pdf = await page.pdf({ path: kept("report.pdf"), preferCSSPageSize: true });
   check(pdf.length > 20000, "it prints");
-  check(pagesOf(pdf) <= 12, "on at most 12 pages", pagesOf(pdf));
+  check(pagesOf(pdf) <= 9, "on at most 9 pages", pagesOf(pdf));
   const rows = await page.evaluate(() => {
     for (const details of document.querySelectorAll("#figures details")) details.open = true;
     return Math.max(...[...document.querySelectorAll("#figures tbody tr")].map((row) => row.offsetHeight));
@@ -212,6 +212,9 @@ const checkPage = async () => {
   await page.emulateMedia({ media: "print" });
   await drawAll(page);
   await wholePage(page, "report-print.png");
+  const printed = await page.evaluate(() =>
+    [...document.querySelectorAll("#pictures img")].filter((image) => !image.closest(".thumbs") && image.checkVisibility()).map(({ src }) => src));
+  check(printed.length === 3 && new Set(printed).size === 3, "each picture is printed once", printed.length);
   check(complaints.length === 0, "no error, no request", complaints.join("; "));
   await context.close();
 };
@@ -228,8 +231,56 @@ const checkLooks = async (name, options) => {
   await context.close();
 };
 
+// Summary, a page for each of at most three targets, one of pictures, provenance.
+const checkSmallPrints = async () => {
+  for (const file of [few_file, many_file, two_file]) {
+    const { page, context } = await open(file);
+    const pages = pagesOf(await page.pdf({ path: kept(`${file.split("/").pop()}.pdf`), preferCSSPageSize: true }));
+    check(pages <= 6, "a report of at most 100 results prints on at most 6 pages", `${file}: ${pages}`);
+    await page.emulateMedia({ media: "print" });
+    await drawAll(page);
+    const missing = await page.evaluate(() => {
+      const failing = [...document.querySelectorAll("table.matrix td.v4, table.matrix td.v6")].filter(({ dataset }) => dataset.p);
+      return failing.filter(({ dataset }) => !document.getElementById(`p${dataset.p}`).checkVisibility()).length;
+    });
+    check(missing === 0, "the picture of each failing condition is printed", missing);
+    await context.close();
+  }
+};
+
+const checkExposures = async () => {
+  const { page, context } = await open(page_file);
+  const slider = page.locator("img-comparison-slider img").first();
+  const own = await slider.getAttribute("src");
+  await page.getByRole("button", { name: "Show pairs side by side" }).click();
+  check(await page.locator(".twice img.own").first().isVisible(), "each picture is shown by its own exposure");
+  await page.getByRole("button", { name: "Same exposure" }).click();
+  const same = await page.locator(".twice img.same").first().isVisible();
+  const left = await page.locator(".twice img.own").first().isVisible();
+  check(same && !left && (await slider.getAttribute("src")) !== own, "one button shows all by the same exposure", [same, left]);
+  await context.close();
+};
+
+const checkScenes = async () => {
+  const { page, context } = await open(two_file);
+  const rows = () => page.locator("table.matrix tbody tr:visible, .ledger tbody tr:visible, .timeline:visible").count();
+  const all = await rows();
+  await page.getByLabel("Scene", { exact: true }).selectOption("open doors");
+  const some = await rows();
+  check(2 * some === all, "a choice of scene leaves the half that is of it", [some, all]);
+  await context.close();
+};
+
 const checkPhone = async () => {
   const { page, context } = await open(page_file, { viewport: { width: 390, height: 844 } });
+  const wide = await page.evaluate(() => {
+    for (const details of document.querySelectorAll("details")) details.open = true;
+    const holders = [...document.querySelectorAll(".scroll")].filter((holder) => holder.scrollWidth > holder.clientWidth);
+    for (const details of document.querySelectorAll("main > section > details")) details.open = false;
+    return holders.map((holder) => holder.getAttribute("aria-label"));
+  });
+  check(wide.length === 0, "each table fits a phone", wide);
+  await picture(page, "report-phone.png", false);
   const heights = await page.evaluate(() =>
     [...document.querySelectorAll("main > section")].map(({ id, offsetHeight }) => [id, offsetHeight]));
   const long = heights.filter(([, height]) => height > 3000);
@@ -271,6 +322,9 @@ await checkPage();
 await checkFirstPage();
 await checkLooks("narrow", { viewport: { width: 400, height: 800 } });
 await checkLooks("dark", { colorScheme: "dark" });
+await checkSmallPrints();
+await checkExposures();
+await checkScenes();
 await checkPhone();
 await checkPlain();
 await checkHostile();

@@ -7,6 +7,7 @@
 
 #include "app/report/sections.h"
 #include "app/report/text.h"
+#include "app/study/words.h"
 
 namespace earthshine::app {
 namespace {
@@ -17,7 +18,7 @@ constexpr std::size_t most_open = 40;
 
 struct Columns {
   std::vector<std::size_t> sight, signal;  // indices into sight_columns, signal_columns
-  bool groups = true;                      // lit by, light by
+  bool groups = true;                      // lit by, light by, decided by
 };
 
 std::string head(std::span<const FigureColumn> all, const std::vector<std::size_t>& shown,
@@ -59,6 +60,10 @@ std::string sight_row(const StudyResults& study, std::size_t index, const Column
             shares_text(result.light_by, Form::Plain) + "<td class=t>" +
             shares_text(shares_of(result.light_from), Form::Percent);
   }
+  if (columns.groups) {
+    const std::string decides = deciding_figure(result);
+    html += "<td class=t>" + (decides.empty() ? dash : decides);
+  }
   html += "<td class=t>" + (result.why.empty() ? dash : escaped(result.why));
   return html + "\n";
 }
@@ -77,17 +82,13 @@ bool has_signal(const ResultEntry& result) {
                      [&](const FigureColumn& column) { return column.of(result).has_value(); });
 }
 
-// Paper has these tables of studies that it can hold in a few pages; else their files have them.
-constexpr std::size_t most_printed = 100;
-
 std::string details(const StudyResults& study, const std::string& title, const Block& block,
                     bool open, const std::string& table) {
   return fmt::format(
-      "<details class=\"rows{}\" data-lamps=\"{}\"{}>\n<summary>{}</summary>\n"
+      "<details class=\"rows unprinted\"{}{}>\n<summary>{}</summary>\n"
       "<div class=\"scroll\" role=\"region\" aria-label=\"{}\" tabindex=\"0\">\n{}</div>\n"
       "</details>\n",
-      study.results.size() > most_printed ? " unprinted" : "", escaped(block.lamps),
-      open ? " open" : "", title, title, table);
+      block_data(study, block), open ? " open" : "", title, title, table);
 }
 
 std::string tables(const StudyResults& study, const Block& block, const Columns& columns,
@@ -102,7 +103,7 @@ std::string tables(const StudyResults& study, const Block& block, const Columns&
   if (columns.groups) {
     sight +=
         "<th scope=\"col\">lit by</th><th scope=\"col\">light by, cd/m²</th>"
-        "<th scope=\"col\">comes last from, %</th>";
+        "<th scope=\"col\">comes last from, %</th><th scope=\"col\">decided by</th>";
   }
   sight += "<th scope=\"col\">why not</th>";
   sight += "</tr></thead>\n<tbody>\n";
@@ -147,12 +148,10 @@ std::string figures_html(const StudyResults& study) {
         "beside this page have every figure.</p>\n",
         study.results.size());
   }
-  if (study.results.size() > most_printed) {
-    html += fmt::format(
-        "<p class=\"paper\">On paper the tables of these {} results are left out; results.csv has "
-        "them.</p>\n",
-        study.results.size());
-  }
+  html += fmt::format(
+      "<p class=\"paper\">On paper these tables are left out; results.csv has all {} "
+      "results.</p>\n",
+      study.results.size());
   for (const Block& block : blocks_of(study)) {
     html += tables(study, block, columns, study.results.size() <= most_open);
   }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report's short sections: what to know, answers, what was looked with, where it comes from.
+// The report's short sections: notes, answers, scenes and settings, provenance.
 #include <fmt/format.h>
 
 #include "app/report/sections.h"
 #include "app/report/text.h"
+#include "app/study/words.h"
 #include "scenes/text/message_text.h"
 #include "studies/orbit/condition_noise.h"
 
@@ -30,7 +31,7 @@ std::string cameras_table(const StudyResults& study) {
   for (const CameraEntry& camera : study.cameras) {
     rows += fmt::format(
         "<tr><th scope=row>{}<td>{}<td>{}<td>{}<td class=t>{}<td class=t>{}<td>{}<td class=t>{}\n",
-        escaped(camera.name), escaped(study.scenes[camera.scene].name), size_text(camera),
+        escaped(camera.name), escaped(scene_title(study, camera.scene)), size_text(camera),
         figure(camera.fov_deg), camera.cctv.empty() ? "none" : escaped(camera.cctv),
         text_or_dash(camera.iris), figure(camera.relative_noise, Form::Percent),
         text_or_dash(camera.error_text));
@@ -59,21 +60,18 @@ std::string conditions_table(const StudyResults& study) {
     rows += fmt::format(
         "<tr><th scope=row>{}<td class=t>{}<td class=t>{}<td>{}<td>{}<td>{}<td>{}<td "
         "class=t>{}<td>{}\n",
-        escaped(condition.id), text_or_dash(condition.name), text_or_dash(condition.lamps),
-        figure(condition.position_deg), figure(condition.time_s, Form::Count),
-        condition.phase.empty() ? dash : condition.phase,
+        text_or_dash(condition.name), escaped(scene_title(study, condition.scene)),
+        text_or_dash(condition.lamps), figure(condition.position_deg),
+        figure(condition.time_s, Form::Count), condition.phase.empty() ? dash : condition.phase,
         figure(condition.sun_share, Form::Percent), factors_text(condition.factors),
         figure(condition.earth_error, Form::Percent));
   }
   if (rows.empty()) return "";
   // On paper the summary's columns say it.
-  constexpr std::size_t most_conditions_printed = 40;
-  const char* const kind =
-      study.conditions.size() > most_conditions_printed ? "rows unprinted" : "rows";
-  return fmt::format("<details class=\"{}\"><summary>", kind) +
+  return "<details class=\"rows unprinted\"><summary>" +
          counted(study.conditions.size(), "condition", "conditions") + "</summary>\n" +
          table("Conditions",
-               {"Condition", "Name", "Lamps", "Position, °", "Time, s", "Phase", "Sun free, %",
+               {"Condition", "Scene", "Lamps", "Position, °", "Time, s", "Phase", "Sun free, %",
                 "Lamp factors", "Error of the Earth’s light, %"},
                rows) +
          "</details>\n";
@@ -115,6 +113,20 @@ std::string key_values(const std::string& caption, const std::string& key, const
   return rows.empty() ? "" : table(caption, {key, "Value"}, rows);
 }
 
+// "picture s1 A" with the scene's name; without it in a study of one scene.
+std::string stage_of(const StudyResults& study, const StudyCost& cost) {
+  std::string stage = cost.stage + " ";
+  for (std::size_t k = 0; k < study.scenes.size(); ++k) {
+    const std::string id = " " + study.scenes[k].id + " ";
+    const std::size_t at = stage.find(id);
+    if (at == std::string::npos) continue;
+    stage.replace(at, id.size(), study.scenes.size() > 1 ? " " + scene_title(study, k) + " " : " ");
+    break;
+  }
+  stage.pop_back();
+  return stage;
+}
+
 }  // namespace
 
 std::string notes_html(const StudyResults& study) {
@@ -134,16 +146,15 @@ std::string answers_html(const StudyResults& study) {
       if (!value.empty()) facts += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", name, value);
     };
     if (answer.found) {
-      std::string arcs;
-      for (const auto& [from, to] : answer.arcs_deg) {
-        arcs += (arcs.empty() ? "" : ", ") + fmt::format("{:.6g}° to {:.6g}°", from, to);
-      }
       fact("camera", escaped(answer.camera));
       fact("iris", escaped(answer.iris));
       fact("lamps", escaped(answer.lamps));
-      fact("needs of these lamps",
-           answer.least_factor ? scenes::percent(*answer.least_factor) : "");
-      fact("where", arcs);
+      fact("detected at", degrees(arcs_text(answer.arcs_deg)));
+      const std::string at =
+          answer.darkest_deg ? " at " + figure(answer.darkest_deg) + "°, where it is darkest" : "";
+      fact("this camera needs", answer.least_factor
+                                    ? scenes::percent(*answer.least_factor) + " of these lamps" + at
+                                    : "");
     }
     if (!facts.empty()) html += "<dl>" + facts + "</dl>";
     html += "</li>\n";
@@ -164,7 +175,7 @@ std::string setup_html(const StudyResults& study) {
 std::string provenance_html(const StudyResults& study) {
   std::string costs;
   for (const StudyCost& cost : study.costs) {
-    costs += fmt::format("<tr><th scope=row>{}<td>{}<td>{}\n", escaped(cost.stage),
+    costs += fmt::format("<tr><th scope=row>{}<td>{}<td>{}\n", escaped(stage_of(study, cost)),
                          figure(cost.seconds), cost.rays ? fmt::format("{}", *cost.rays) : dash);
   }
   return key_values("Provenance", "Of", study.provenance) +

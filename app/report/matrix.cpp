@@ -43,7 +43,7 @@ std::string phase_row(const StudyResults& study, const Block& block) {
 std::string column_row(const StudyResults& study, const Block& block) {
   std::string html =
       "<tr><th scope=\"col\" data-key=\"camera\">Camera</th>"
-      "<th scope=\"col\" data-key=\"target\">Target</th><th scope=\"col\">Seen</th>";
+      "<th scope=\"col\" data-key=\"target\">Target</th><th scope=\"col\">Detected</th>";
   for (const std::size_t k : block.conditions) {
     html += "<th scope=\"col\" class=\"place\"><span>" + escaped(place_of(study.conditions[k])) +
             "</span></th>";
@@ -101,12 +101,12 @@ std::string table(const StudyResults& study, const Block& block) {
   const ThumbnailOf thumbnails = thumbnails_of(study);
   const std::string title = block_title(study, block);
   std::string html = fmt::format(
-      "<div class=\"scroll\" role=\"region\" aria-label=\"Summary: {}\" tabindex=\"0\" "
-      "data-lamps=\"{}\">\n<table class=\"matrix{}\">\n<caption>{}</caption>\n"
+      "<div class=\"scroll\" role=\"region\" aria-label=\"Summary: {}\" tabindex=\"0\"{}>\n<table "
+      "class=\"matrix{}\">\n<caption>{}</caption>\n"
       "<colgroup><col class=\"name\"><col class=\"name\"><col class=\"seen\"><col "
       "span=\"{}\"></colgroup>\n"
       "<thead>\n",
-      title, escaped(block.lamps), block.conditions.size() > 8 ? " many" : "", title,
+      title, block_data(study, block), block.conditions.size() > 8 ? " many" : "", title,
       block.conditions.size());
   html += phase_row(study, block) + column_row(study, block) + "</thead>\n<tbody>\n";
   for (const auto& [names, by_condition] : rows) {
@@ -129,8 +129,8 @@ std::string nothing(const StudyResults& study) {
 std::string matrix_html(const StudyResults& study) {
   if (study.results.empty()) return nothing(study);
   std::string html =
-      "<p>What each camera makes of each target. <em>Seen</em> counts the conditions under which "
-      "it is at least detected.</p>\n";
+      "<p>The verdict on each target by each camera. <em>Detected</em> counts the conditions under "
+      "which it is at least detected.</p>\n";
   bool none_in_view = true;
   for (const ResultEntry& result : study.results) {
     none_in_view = none_in_view && result.sight.verdict >= studies::Verdict::OutOfView;

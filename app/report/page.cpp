@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <set>
+#include <string_view>
 #include <vector>
 
 #include "app/console.h"
@@ -32,7 +34,12 @@ std::string in_short(const StudyResults& study) {
   std::array<std::size_t, verdict_words.size()> counts{};
   for (const ResultEntry& result : study.results)
     ++counts[static_cast<std::size_t>(result.sight.verdict)];
-  std::string text = counted(study.cameras.size(), "camera", "cameras") + ", " +
+  // Cameras of several scenes may be one and the same.
+  std::set<std::string_view> cameras;
+  for (const CameraEntry& camera : study.cameras) cameras.insert(camera.name);
+  const std::string scenes =
+      study.scenes.size() > 1 ? fmt::format("{} scenes, ", study.scenes.size()) : "";
+  std::string text = scenes + counted(cameras.size(), "camera", "cameras") + ", " +
                      counted(study.targets.size(), "target", "targets") + ", " +
                      counted(study.conditions.size(), "condition", "conditions") + ": " +
                      counted(study.results.size(), "result", "results");
@@ -57,19 +64,18 @@ std::string header(const StudyResults& study, bool plain) {
         "<p class=\"plain\" role=\"note\">The plain report: the same content without plots, "
         "sliders, sorting and filters.</p>\n";
   }
-  return html + "</header>\n";
+  return html + orbits_html(study) + "</header>\n";
 }
 
 std::vector<ReportSection> sections_of(const StudyResults& study,
                                        const std::filesystem::path& folder, bool plain) {
   std::vector<ReportSection> sections = {
-      {"short", "In short", short_html(study)},
+      {"short", "Best cameras", short_html(study)},
       {"answers", "Answers", answers_html(study)},
-      {"notes", "What to know", notes_html(study)},
+      {"notes", "Notes", notes_html(study)},
       {"summary", "Summary", matrix_html(study)},
-      {"timelines", "Over the orbit", timelines_html(study)},
+      {"targets", "Targets", targets_html(study)},
       {"pictures", "Pictures", pictures_html(study, folder)},
-      {"ledger", "Ledger: why not", ledger_html(study)},
       {"figures", "All figures", figures_html(study)},
       {"setup", "Scenes, cameras, conditions, settings", setup_html(study)},
       {"provenance", "Provenance and cost", provenance_html(study)},

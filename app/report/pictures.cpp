@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs and single pictures, read from the study's folder into the page.
+// Pictures, read from the study's folder into the page.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
+#include "app/options.h"
 #include "app/report/sections.h"
 #include "app/report/text.h"
+#include "app/study/words.h"
 #include "base/error.h"
 #include "base/input/input_file.h"
 
@@ -40,39 +43,111 @@ std::string png_bytes(const fs::path& folder, const std::string& file) {
   return bytes;
 }
 
+// "EV 7.3, white at 190 cd/m²" of ISO 100, as --exposure has it.
+std::string exposure_text(const Number& white_cd_m2) {
+  if (!white_cd_m2 || !(*white_cd_m2 > 0.0)) return "";
+  return fmt::format("EV {:.1f}, white at {} cd/m²", std::log2(*white_cd_m2 / white_of_ev0),
+                     figure(white_cd_m2));
+}
+
+// Each picture of the study is in the page once, and by one white for all where there is such.
 class Album {
  public:
-  explicit Album(const fs::path& folder) : folder_(folder) {}
-  [[nodiscard]] bool has(const PictureEntry& picture) const { return read_.contains(picture.file); }
-  std::string image(const PictureEntry& picture, const std::string& alternative) {
-    const auto [entry, added] = read_.try_emplace(picture.file);
-    if (added) entry->second = base64(png_bytes(folder_, picture.file));
-    return fmt::format("<img alt=\"{}\" src=\"data:image/png;base64,{}\">", escaped(alternative),
-                       entry->second);
+  Album(const StudyResults& study, const fs::path& folder) : folder_(folder) {
+    for (const FigureEntry& picture : study.figures) add(picture);
+    for (const PairEntry& pair : study.pairs) {
+      for (const PictureEntry* side : {&pair.left, &pair.right})
+        add({*side, {}, {}, false, {}, {}, {}});
+    }
+    for (const PairEntry& pair : study.pairs) {
+      for (const PictureEntry* side : {&pair.left, &pair.right}) pictures_[of(*side)].paired = true;
+    }
+  }
+
+  // Its number among the pictures.
+  [[nodiscard]] std::size_t of(const PictureEntry& picture) const {
+    return places_.at(picture.file);
+  }
+
+  [[nodiscard]] std::string html() const {
+    std::string html;
+    for (std::size_t k = 0; k < pictures_.size(); ++k) {
+      const FigureEntry& picture = pictures_[k].entry;
+      const bool twice = !picture.same_file.empty();
+      html += fmt::format("<figure id=\"i{}\" class=\"{}{}\">", k,
+                          pictures_[k].paired ? "paired" : "", twice ? " twice" : "") +
+              image(folder_, picture.file, picture.caption, "own");
+      if (twice) {
+        html += image(folder_, picture.same_file, picture.caption + ", same exposure", "same");
+      }
+      html += "<figcaption>" + escaped(picture.caption) + exposure(picture.white_cd_m2, "own") +
+              exposure(picture.same_white_cd_m2, "same") + "</figcaption></figure>\n";
+    }
+    return html;
+  }
+
+  static std::string image(const fs::path& folder, const std::string& file,
+                           const std::string& alternative, const char* kind) {
+    return fmt::format("<img class=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">", kind,
+                       escaped(alternative), base64(png_bytes(folder, file)));
+  }
+
+  static std::string exposure(const Number& white_cd_m2, const char* kind) {
+    const std::string text = exposure_text(white_cd_m2);
+    return text.empty() ? "" : fmt::format(" <span class=\"ev {}\">{}</span>", kind, text);
   }
 
  private:
+  struct Picture {
+    FigureEntry entry;
+    bool paired = false;
+  };
+
+  void add(const FigureEntry& picture) {
+    if (places_.try_emplace(picture.file, pictures_.size()).second) pictures_.push_back({picture});
+  }
+
   const fs::path& folder_;
-  std::map<std::string, std::string> read_;
+  std::vector<Picture> pictures_;
+  std::map<std::string, std::size_t> places_;
 };
 
-// The summary's cells show them beside their reasons; paper has none of them.
-std::string thumbnails_html(const StudyResults& study, Album& album) {
+// The script puts the two pictures under a slider.
+std::string pairs_html(const StudyResults& study, const Album& album) {
+  if (study.pairs.empty()) return "";
+  std::string html = "<ul class=\"pairs\">\n";
+  for (const PairEntry& pair : study.pairs) {
+    html += fmt::format(
+        "<li data-left=\"i{}\" data-right=\"i{}\"><strong>{}</strong>: <span>{}</span>, "
+        "<span>{}</span></li>\n",
+        album.of(pair.left), album.of(pair.right), escaped(pair.title), escaped(pair.left.caption),
+        escaped(pair.right.caption));
+  }
+  return html + "</ul>\n";
+}
+
+// Paper has those of studies that it can hold in a few pages.
+constexpr std::size_t most_printed = 100;
+
+// The summary's cells show them beside their reasons.
+std::string thumbnails_html(const StudyResults& study, const fs::path& folder) {
   if (study.thumbnails.empty()) return "";
   std::string html = fmt::format(
-      "<details class=\"unprinted\">\n<summary>{}: noon, midnight and where a verdict changes, "
-      "each "
-      "exposed for itself</summary>\n<div class=\"thumbs\">\n",
+      "<details{}>\n<summary>{}: noon, midnight, where a verdict changes and where a target is "
+      "missed, each at its own exposure</summary>\n<div class=\"thumbs\">\n",
+      study.results.size() > most_printed ? " class=\"unprinted\"" : "",
       counted(study.thumbnails.size(), "condition in small", "conditions in small"));
   for (std::size_t k = 0; k < study.thumbnails.size(); ++k) {
     const ThumbnailEntry& small = study.thumbnails[k];
     const ConditionEntry& condition = study.conditions[small.condition];
-    const std::string title = "Camera " + study.cameras[small.camera].name + ", " + condition.name;
-    html += fmt::format("<figure id=\"p{}\">", k) + album.image({small.file, {}}, title);
+    std::string title = "Camera " + study.cameras[small.camera].name + ", " + condition.name;
+    if (study.scenes.size() > 1) title += ", " + scene_title(study, condition.scene);
+    html += fmt::format("<figure id=\"p{}\">", k) + Album::image(folder, small.file, title, "own");
     if (!small.monitor.empty()) {
-      html += album.image({small.monitor, {}}, title + ", on the monitor");
+      html += Album::image(folder, small.monitor, title + ", on the monitor", "monitor");
     }
-    html += "<figcaption>" + escaped(title) + "</figcaption></figure>\n";
+    html += "<figcaption>" + escaped(title) + Album::exposure(small.white_cd_m2, "own") +
+            "</figcaption></figure>\n";
   }
   return html + "</div>\n</details>\n";
 }
@@ -81,29 +156,11 @@ std::string thumbnails_html(const StudyResults& study, Album& album) {
 
 std::string pictures_html(const StudyResults& study, const fs::path& folder) {
   if (study.pairs.empty() && study.figures.empty() && study.thumbnails.empty()) return "";
-  Album album(folder);
-  std::string html;
-  if (!study.pairs.empty()) html += "<div class=\"pairs\">\n";
-  for (const PairEntry& pair : study.pairs) {
-    // On paper each picture is there once.
-    const bool again = album.has(pair.left) && album.has(pair.right);
-    html += std::string(again ? "<figure class=\"pair unprinted\">" : "<figure class=\"pair\">") +
-            "\n<figcaption>" + escaped(pair.title) + "</figcaption>\n<div class=\"sides\">\n";
-    for (const PictureEntry* side : {&pair.left, &pair.right}) {
-      html += "<figure>" + album.image(*side, pair.title + ": " + side->caption) + "<figcaption>" +
-              escaped(side->caption) + "</figcaption></figure>\n";
-    }
-    html += "</div>\n</figure>\n";
-  }
-  if (!study.pairs.empty()) html += "</div>\n";
-  if (!study.figures.empty()) html += "<div class=\"singles\">\n";
-  for (const PictureEntry& single : study.figures) {
-    html += std::string(album.has(single) ? "<figure class=\"unprinted\">" : "<figure>") +
-            album.image(single, single.caption) + "<figcaption>" + escaped(single.caption) +
-            "</figcaption></figure>\n";
-  }
-  if (!study.figures.empty()) html += "</div>\n";
-  return html + thumbnails_html(study, album);
+  const Album album(study, folder);
+  const std::string pictures = album.html();
+  return pairs_html(study, album) +
+         (pictures.empty() ? "" : "<div class=\"singles\">\n" + pictures + "</div>\n") +
+         thumbnails_html(study, folder);
 }
 
 }  // namespace earthshine::app

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a reader needs in a minute: for each target which camera has it most often, and what hinders
-// where it has not.
+// For each target the camera that detects it most often, and the obstacles where it does not.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -99,11 +98,10 @@ std::string short_html(const StudyResults& study) {
   std::string html =
       "<div class=\"scroll\" role=\"region\" aria-label=\"Best camera of each target\" "
       "tabindex=\"0\">\n<table>\n"
-      "<caption>How often the best camera detects each target at least, and what comes first where "
-      "it does not</caption>\n<thead><tr>";
+      "<caption>Best camera for each target</caption>\n<thead><tr>";
   for (const char* head :
-       {"Target", "Under", "Best camera", "Seen", "Other cameras", "Else mostly"}) {
-    const bool number = std::string_view(head) == "Seen";
+       {"Target", "Conditions", "Best camera", "Detected", "Other cameras", "Main obstacles"}) {
+    const bool number = std::string_view(head) == "Detected";
     html += fmt::format("<th scope=\"col\"{}>{}</th>", number ? "" : " class=\"t\"", head);
   }
   html += "</tr></thead>\n<tbody>\n" + rows + "</tbody>\n</table>\n</div>\n";

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "app/report/sections.h"
+#include "app/study/words.h"
 #include "base/error.h"
 
 namespace earthshine::app {
@@ -198,14 +199,36 @@ std::vector<std::size_t> results_of(const StudyResults& study, const Block& bloc
 std::string block_title(const StudyResults& study, const Block& block) {
   const std::string lamps = block.lamps.empty() ? "" : "lamps: " + escaped(block.lamps);
   if (study.scenes.size() == 1 && !lamps.empty()) return lamps;
-  const std::string& name = study.scenes[block.scene].name;
-  const std::string title = escaped(name.empty() ? study.scenes[block.scene].id : name);
+  const std::string title = escaped(scene_title(study, block.scene));
   return lamps.empty() ? title : title + ", " + lamps;
 }
 
-std::string places_text(const StudyResults& study, const Block& block,
-                        const std::vector<std::size_t>& places) {
-  if (places.size() == block.conditions.size() && places.size() > 1) return "everywhere";
+std::string block_data(const StudyResults& study, const Block& block) {
+  return fmt::format(" data-scene=\"{}\" data-lamps=\"{}\"",
+                     escaped(scene_title(study, block.scene)), escaped(block.lamps));
+}
+
+std::string degrees(std::string text) {
+  constexpr std::string_view unit = " deg", to = " to ";
+  for (std::size_t at = 0; (at = text.find(unit, at)) != std::string::npos;) {
+    text.replace(at, unit.size(), "°");
+    const std::size_t between = text.rfind(to, at), comma = text.rfind(',', at);
+    if (between != std::string::npos && (comma == std::string::npos || between > comma)) {
+      text.insert(between, "°");
+    }
+  }
+  return text;
+}
+
+std::string conditions_text(const StudyResults& study, const Block& block,
+                            const std::vector<std::size_t>& places) {
+  const bool several = study.scenes.size() > 1 || !block.lamps.empty();
+  const std::string under = several ? ", " + block_title(study, block) : std::string();
+  if (places.size() == block.conditions.size() && places.size() > 1) {
+    return (study.conditions[block.conditions.front()].position_deg ? "every position"
+                                                                    : "every condition") +
+           under;
+  }
   std::string text;
   for (std::size_t k = 0; k < places.size();) {
     std::size_t last = k;
@@ -220,7 +243,7 @@ std::string places_text(const StudyResults& study, const Block& block,
     if (last > k) text += " to " + escaped(place_of(condition(last)));
     k = last + 1;
   }
-  return text;
+  return text + under;
 }
 
 }  // namespace earthshine::app

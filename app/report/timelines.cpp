@@ -8,6 +8,7 @@
 #include "app/report/sections.h"
 #include "app/report/text.h"
 #include "app/study/json_fields.h"
+#include "app/study/words.h"
 
 namespace earthshine::app {
 namespace {
@@ -42,6 +43,19 @@ std::string runs(const Timeline& line, Holds holds) {
   return text;
 }
 
+// Of a target without a probability anywhere.
+std::string unseen_text(const Timeline& line) {
+  const auto where = [&](studies::Verdict verdict) {
+    return runs(line, [&](std::size_t k) { return line.verdict[k] == verdict; });
+  };
+  const std::string hidden = where(studies::Verdict::Hidden),
+                    outside = where(studies::Verdict::OutOfView);
+  if (hidden.empty() && outside.empty()) return "No result.";
+  if (hidden.empty()) return "Outside the camera’s view.";
+  if (outside.empty()) return "In the camera’s view, but hidden at every position.";
+  return "Hidden at " + hidden + "; outside the camera’s view at " + outside + ".";
+}
+
 std::string in_words(const Timeline& line) {
   const std::size_t count = line.position_deg.size();
   std::size_t known = 0, seen = 0, best = count, worst = count;
@@ -54,7 +68,7 @@ std::string in_words(const Timeline& line) {
   }
   std::string text;
   if (known == 0) {
-    text = "Never in view.";
+    text = unseen_text(line);
   } else if (seen == 0) {
     text = fmt::format("Nowhere likely to be detected; at best {} at {}.",
                        figure(line.detect[best], Form::Chance), place(line, best));
@@ -87,24 +101,23 @@ Json rounded(const std::vector<Number>& values) {
 
 }  // namespace
 
-std::string timelines_html(const StudyResults& study) {
+std::string timelines_html(const StudyResults& study, std::size_t target) {
   const std::vector<Timeline> lines = timelines_of(study);
-  if (lines.empty()) return "";
-  std::string html =
-      "<p>Probabilities of detection, recognition and identification over the orbit, and the "
-      "target’s luminance. The figures are in <a href=\"#figures\">All figures</a>.</p>\n"
-      "<div class=\"timelines\">\n";
+  std::string html;
   for (std::size_t k = 0; k < lines.size(); ++k) {
     const Timeline& line = lines[k];
+    if (line.target != study.targets[target]) continue;
     std::string title = fmt::format("Camera {}, {}", escaped(line.camera), escaped(line.target));
     if (!line.lamps.empty()) title += ", lamps: " + escaped(line.lamps);
-    if (study.scenes.size() > 1) title += " (" + escaped(study.scenes[line.scene].name) + ")";
+    const std::string scene = escaped(scene_title(study, line.scene));
+    if (study.scenes.size() > 1) title += " (" + scene + ")";
     html += fmt::format(
         "<figure class=\"timeline\" data-line=\"{}\" data-camera=\"{}\" data-target=\"{}\" "
-        "data-lamps=\"{}\">\n<figcaption>{}</figcaption>\n<p>{}</p>\n</figure>\n",
-        k, escaped(line.camera), escaped(line.target), escaped(line.lamps), title, in_words(line));
+        "data-scene=\"{}\" data-lamps=\"{}\">\n<figcaption>{}</figcaption>\n<p>{}</p>\n</figure>\n",
+        k, escaped(line.camera), escaped(line.target), scene, escaped(line.lamps), title,
+        in_words(line));
   }
-  return html + "</div>\n";
+  return html.empty() ? "" : "<div class=\"timelines\">\n" + html + "</div>\n";
 }
 
 Json timelines_json(const StudyResults& study) {

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "app/study/json_fields.h"
+#include "app/study/words.h"
 
 namespace earthshine::app {
 namespace {
@@ -69,7 +70,7 @@ constexpr CsvColumn csv_columns[] = {
 
 // A line of the text.
 struct Line {
-  std::string camera, target, lamps, why;
+  std::string scene, camera, target, lamps, why;  // why: at worst, with its condition and figure
   std::vector<std::pair<studies::Verdict, int>> verdicts;  // how often, in the results' order
   double best = -1.0, worst = 2.0;
   int count = 0;
@@ -79,15 +80,15 @@ std::vector<Line> lines_of(const StudyResults& study) {
   std::vector<Line> lines;
   for (const ResultEntry& result : study.results) {
     const ConditionEntry& condition = study.conditions[result.condition];
-    const std::string& name = study.cameras[result.camera].name;
-    const std::string camera =
-        study.scenes.size() > 1 ? study.scenes[condition.scene].id + " " + name : name;
+    const std::string& camera = study.cameras[result.camera].name;
+    const std::string scene = study.scenes.size() > 1 ? scene_title(study, condition.scene) : "";
     const std::string& target = study.targets[result.target];
     auto line = std::find_if(lines.begin(), lines.end(), [&](const Line& l) {
-      return l.camera == camera && l.target == target && l.lamps == condition.lamps;
+      return l.scene == scene && l.camera == camera && l.target == target &&
+             l.lamps == condition.lamps;
     });
     if (line == lines.end()) {
-      line = lines.insert(lines.end(), {camera, target, condition.lamps, {}, {}});
+      line = lines.insert(lines.end(), {scene, camera, target, condition.lamps, {}, {}});
     }
     ++line->count;
     const studies::Verdict verdict = result.sight.verdict;
@@ -102,7 +103,11 @@ std::vector<Line> lines_of(const StudyResults& study) {
     line->best = std::max(line->best, p);
     if (p >= line->worst) continue;
     line->worst = p;
-    line->why = result.why;
+    line->why.clear();
+    if (result.why.empty()) continue;
+    if (condition.position_deg) line->why = fmt::format("at {:g} deg: ", *condition.position_deg);
+    const std::string figure = deciding_figure(result);
+    line->why += figure + (figure.empty() ? "" : "; ") + result.why;
   }
   return lines;
 }
@@ -292,6 +297,8 @@ std::vector<Timeline> timelines_of(const StudyResults& study) {
       line->identify.push_back(value(chance_of<&Probability::identify>));
       line->luminance.push_back(value(sight_of<&Sight::luminance>));
       line->weber.push_back(value(sight_of<&Sight::weber>));
+      line->verdict.push_back(found == results.end() ? std::nullopt
+                                                     : std::optional(found->second->sight.verdict));
     }
   }
   std::erase_if(lines, [](const Timeline& line) { return line.detect.size() < 2; });
@@ -320,7 +327,12 @@ std::string study_text(const StudyResults& study) {
   std::string text = fmt::format("{:<10} {:<20} {:<16} {:>13}  {}\n", "camera", "target", "lamps",
                                  "P(detect)", "verdicts; why not better, at worst");
   const std::vector<Line> lines = lines_of(study);
+  const std::string* scene = nullptr;
   for (const Line& line : lines) {
+    if (!line.scene.empty() && (scene == nullptr || *scene != line.scene)) {
+      text += fmt::format("in {}:\n", line.scene);
+    }
+    scene = &line.scene;
     std::string verdicts;
     for (const auto& [verdict, count] : line.verdicts) {
       verdicts += fmt::format("{}{}{}", verdicts.empty() ? "" : ", ", word_of(verdict),
@@ -337,9 +349,9 @@ std::string study_text(const StudyResults& study) {
     text += fmt::format("{}: {}\n", answer.wanted, answer.text);
   }
   for (const CameraEntry& camera : study.cameras) {
-    const std::string scene =
-        study.scenes.size() > 1 ? study.scenes[camera.scene].id + " " : std::string();
-    text += fmt::format("{}camera {}: {}\n", scene, camera.name, camera.error_text);
+    const std::string in =
+        study.scenes.size() > 1 ? " in " + scene_title(study, camera.scene) : std::string();
+    text += fmt::format("camera {}{}: {}\n", camera.name, in, camera.error_text);
   }
   for (const std::string& note : black_back_notes(study)) text += note + "\n";
   return text;
@@ -347,19 +359,17 @@ std::string study_text(const StudyResults& study) {
 
 std::vector<std::string> black_back_notes(const StudyResults& study) {
   struct Seen {
-    std::string camera, target;
+    std::size_t camera = 0, target = 0;
     int count = 0, of = 0;
     double share = 0.0;
   };
   std::vector<Seen> list;
   for (const ResultEntry& result : study.results) {
     if (!result.sight.black_back) continue;
-    const std::string& camera = study.cameras[result.camera].name;
-    const std::string& target = study.targets[result.target];
     auto seen = std::find_if(list.begin(), list.end(), [&](const Seen& s) {
-      return s.camera == camera && s.target == target;
+      return s.camera == result.camera && s.target == result.target;
     });
-    if (seen == list.end()) seen = list.insert(list.end(), {camera, target});
+    if (seen == list.end()) seen = list.insert(list.end(), {result.camera, result.target});
     const double share = *result.sight.black_back;
     ++seen->of;
     seen->count += share >= studies::SightOptions{}.most_black_back ? 1 : 0;
@@ -368,11 +378,13 @@ std::vector<std::string> black_back_notes(const StudyResults& study) {
   std::vector<std::string> notes;
   for (const Seen& seen : list) {
     if (seen.count == 0) continue;
+    const CameraEntry& camera = study.cameras[seen.camera];
     notes.push_back(fmt::format(
-        "Camera {} looks at the black back of {} ({:.0f} % of what it sees, in {} of {} results): "
-        "its surface has one side. How its real back looks is not known, so it counts as doubtful "
-        "at best; turn it round, or give its material two_sided = true.",
-        seen.camera, seen.target, 100.0 * seen.share, seen.count, seen.of));
+        "Camera {}{} looks at the black back of {} ({:.0f} % of what it sees, in {} of {} "
+        "results): its surface has one side. How its real back looks is not known, so it counts "
+        "as doubtful at best; turn it round, or give its material two_sided = true.",
+        camera.name, study.scenes.size() > 1 ? " in " + scene_title(study, camera.scene) : "",
+        study.targets[seen.target], 100.0 * seen.share, seen.count, seen.of));
   }
   return notes;
 }

@@ -22,9 +22,25 @@ using Number = std::optional<double>;  // nullopt: does not exist
 // Entries that others name; they stand in lists of StudyResults, and a place in one is its number.
 enum class Named { Scene, Camera, Target, Condition };
 
+// Where the bay's axis, z of the scene, points: components of a unit vector along the zenith, the
+// direction of flight and the orbit's normal.
+struct BayAxis {
+  double position_deg = 0.0;
+  double zenith = 0.0, forward = 0.0, normal = 0.0;
+};
+// A scene's [orbit]; positions from orbit noon along the motion.
+struct OrbitEntry {
+  Number altitude_km, beta_deg, period_s;
+  Number position_deg;  // of the scene itself
+  std::string attitude, inertial_as;
+  Number inertial_at_deg;
+  std::vector<studies::Arc> umbra_deg, penumbra_deg;  // one arc, or none
+  std::vector<BayAxis> bay;  // at 0, 90, 180 and 270 deg, where the attitude is known
+};
 struct SceneEntry {
   std::string id, name, path;
   std::optional<std::size_t> patches;
+  std::optional<OrbitEntry> orbit;
 };
 struct CameraEntry {
   std::size_t scene = 0;
@@ -78,6 +94,7 @@ struct Timeline {
   std::string camera, target, lamps;
   std::vector<Number> position_deg = {}, time_s = {}, sun_share = {};
   std::vector<Number> detect = {}, recognise = {}, identify = {}, luminance = {}, weber = {};
+  std::vector<std::optional<studies::Verdict>> verdict = {};
 };
 struct AnswerEntry {
   std::string wanted, target;
@@ -88,6 +105,7 @@ struct AnswerEntry {
   std::vector<studies::Arc> arcs_deg;
   std::string scene;  // "" in a study of one
   Number best_probability;
+  Number darkest_deg;  // where least_factor holds
 };
 struct PictureEntry {
   std::string file, caption;
@@ -99,12 +117,16 @@ struct PairEntry {
 struct FigureEntry : PictureEntry {
   std::string name, exr;
   bool clean = false;
-  std::optional<Number> white_cd_m2;  // of clean ones; none where each has its own
+  Number white_cd_m2;  // luminance of white in a clean picture
+  // The same by one white for all of the study; "" where that is how `file` is.
+  std::string same_file;
+  Number same_white_cd_m2;
 };
-// Of a condition as a camera shows it; monitor: "" without a CCTV.
+// Of a condition as a camera shows it, by its own white; monitor: "" without a CCTV.
 struct ThumbnailEntry {
   std::size_t condition = 0, camera = 0;
   std::string file, monitor;
+  Number white_cd_m2;
 };
 // What was done or found in the folder, from an earlier run; seconds: of the run that did it.
 struct StudyCost {

@@ -125,11 +125,34 @@ void describe(Fields& fields, Either<ResultEntry> auto& result) {
 }
 
 template <class Fields>
+void describe(Fields& fields, Either<BayAxis> auto& axis) {
+  fields("position_deg", axis.position_deg);
+  fields("zenith", axis.zenith);
+  fields("forward", axis.forward);
+  fields("normal", axis.normal);
+}
+
+template <class Fields>
+void describe(Fields& fields, Either<OrbitEntry> auto& orbit) {
+  fields("altitude_km", orbit.altitude_km);
+  fields("beta_deg", orbit.beta_deg);
+  fields("period_s", orbit.period_s);
+  fields("position_deg", orbit.position_deg);
+  fields("attitude", orbit.attitude);
+  fields.if_any("inertial_as", orbit.inertial_as);
+  fields.if_any("inertial_at_deg", orbit.inertial_at_deg);
+  fields("umbra_deg", orbit.umbra_deg);
+  fields("penumbra_deg", orbit.penumbra_deg);
+  fields("bay", orbit.bay);
+}
+
+template <class Fields>
 void describe(Fields& fields, Either<SceneEntry> auto& scene) {
   fields.entry(Named::Scene, "id", scene.id);
   fields("name", scene.name);
   fields("path", scene.path);
   fields("patches", scene.patches);
+  fields.if_any("orbit", scene.orbit);
 }
 
 template <class Fields>
@@ -175,6 +198,7 @@ void describe(Fields& fields, Either<AnswerEntry> auto& answer) {
   fields("arcs_deg", answer.arcs_deg);
   fields.if_any("scene", answer.scene);
   fields.if_any("best_probability", answer.best_probability);
+  fields.if_any("darkest_deg", answer.darkest_deg);
 }
 
 template <class Fields>
@@ -198,6 +222,8 @@ void describe(Fields& fields, Either<FigureEntry> auto& figure) {
   fields("caption", figure.caption);
   fields("clean", figure.clean);
   fields.if_any("white_cd_m2", figure.white_cd_m2);
+  fields.if_any("same_file", figure.same_file);
+  fields.if_any("same_white_cd_m2", figure.same_white_cd_m2);
 }
 
 template <class Fields>
@@ -206,6 +232,7 @@ void describe(Fields& fields, Either<ThumbnailEntry> auto& small) {
   fields.camera("camera", small.camera, small.condition);
   fields("file", small.file);
   fields.or_null("monitor_file", small.monitor);
+  fields.if_any("white_cd_m2", small.white_cd_m2);
 }
 
 template <class Fields>

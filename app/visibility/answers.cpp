@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/study/study.h"
+#include "app/study/words.h"
 #include "base/parallel.h"
 #include "scenes/text/message_text.h"
 #include "studies/orbit/condition_noise.h"
@@ -40,14 +42,6 @@ bool has_lamps(const studies::LightBasis& basis, std::size_t setting) {
 
 std::string at(double position_deg) { return fmt::format("orbit {:g} deg", position_deg); }
 
-std::string arcs_text(const std::vector<studies::Arc>& arcs) {
-  std::string text;
-  for (const auto& [from, to] : arcs) {
-    text += fmt::format("{}{:.0f} to {:.0f} deg", text.empty() ? "" : ", ", from, to);
-  }
-  return text;
-}
-
 std::string way_text(const ViewingConfiguration& way) {
   return fmt::format("camera {}{}, lamps {}{}", way.camera,
                      way.iris.empty() ? "" : " with iris " + way.iris, way.lamps,
@@ -72,33 +66,40 @@ Rated rate(const ViewingConfiguration& way, double wanted, bool closed) {
   return rated;
 }
 
-std::string lamp_text(const std::vector<ViewingConfiguration>& ways, double wanted) {
-  const ViewingConfiguration* best = nullptr;
-  const ViewingConfiguration* tried = nullptr;
+// What the lamps of one way must give where Sun and Earth give least.
+std::string lamps_of(const ViewingConfiguration& way, double wanted) {
+  const std::string where =
+      way.darkest_deg ? fmt::format("at {}, where it is darkest, ", at(*way.darkest_deg)) : "";
+  const std::string by = fmt::format(" For {}, {}", way_text(way), where);
+  if (!way.least_factor) {
+    return fmt::format("{}no lamps up to {:g} times as bright bring it to {:g}.", by,
+                       studies::most_lamp_factor, wanted);
+  }
+  const double factor = *way.least_factor;
+  if (factor <= 0.0) return by + "no lamps are needed.";
+  if (factor >= 1.0) return fmt::format("{}the lamps must be {:.2g} times as bright.", by, factor);
+  return fmt::format("{}the lamps could be dimmed to {}{} %.", by,
+                     factor <= studies::least_lamp_factor ? "less than " : "",
+                     scenes::two_digits(100.0 * factor));
+}
+
+// Of the answer's own way; another one's only where it needs less, named as well.
+std::string lamp_text(const std::vector<ViewingConfiguration>& ways,
+                      const ViewingConfiguration& own, double wanted) {
+  const ViewingConfiguration* least = nullptr;
+  const ViewingConfiguration* tried = own.tried_factors ? &own : nullptr;
   for (const ViewingConfiguration& way : ways) {
-    if (way.tried_factors) tried = &way;
-    if (way.least_factor && (best == nullptr || *way.least_factor < *best->least_factor)) {
-      best = &way;
+    if (tried == nullptr && way.tried_factors) tried = &way;
+    if (way.least_factor && (least == nullptr || *way.least_factor < *least->least_factor)) {
+      least = &way;
     }
   }
   if (tried == nullptr) return "";
-  const ViewingConfiguration& told = best != nullptr ? *best : *tried;
-  const std::string where = told.darkest_deg
-                                ? fmt::format("Where it is darkest, at {}, ", at(*told.darkest_deg))
-                                : "Here ";
-  if (best == nullptr) {
-    return fmt::format(" {}no lamps up to {:g} times theirs bring it to {:g}.", where,
-                       studies::most_lamp_factor, wanted);
-  }
-  if (*best->least_factor <= 0.0) return fmt::format(" {}no lamps are needed.", where);
-  const double factor = *best->least_factor;
-  const std::string how =
-      factor < 1.0 ? fmt::format("could be dimmed to {}{} %",
-                                 factor <= studies::least_lamp_factor ? "less than " : "",
-                                 scenes::two_digits(100.0 * factor))
-                   : fmt::format("must be {:.2g} times as bright", factor);
-  return fmt::format(" {}lamps {} {}; camera {} then still sees it so.", where, best->lamps, how,
-                     best->camera);
+  std::string text = own.tried_factors || least == nullptr ? lamps_of(*tried, wanted) : "";
+  const bool less = least != nullptr && least != tried &&
+                    (!tried->least_factor || *least->least_factor < 0.9 * *tried->least_factor);
+  if (less || text.empty()) text += lamps_of(*least, wanted);
+  return text;
 }
 
 // The camera's CCTV with that iris mode; its own for an empty one.
@@ -189,7 +190,11 @@ AnswerEntry answer_of(const studies::WantedTarget& wanted, const studies::StudyF
   answer.scene = way.scene;
   answer.best_probability = best.best;
   answer.least_factor = way.least_factor;
-  answer.arcs_deg = best.arcs;
+  if (way.least_factor) answer.darkest_deg = way.darkest_deg;
+  for (const auto& [from, to] : best.arcs) {
+    const double turns = 360.0 * std::floor(from / 360.0);
+    answer.arcs_deg.emplace_back(from - turns, to - turns);
+  }
   answer.found = best.best >= wanted.probability;
   std::string text;
   if (best.best < wanted.probability) {
@@ -207,7 +212,7 @@ AnswerEntry answer_of(const studies::WantedTarget& wanted, const studies::StudyF
         way_text(way), arcs_text(best.arcs),
         study.timeline ? fmt::format(" ({:.0f} % of the orbit)", 100.0 * best.reach) : "");
   }
-  answer.text = text + lamp_text(ways, wanted.probability);
+  answer.text = text + lamp_text(ways, way, wanted.probability);
   return answer;
 }
 

@@ -20,7 +20,7 @@ struct VisibilityCall {
   StudyCall study;
   std::vector<std::string> wanted, iris;
   bool dry_run = false;
-  ToneChoice tone = {usual_percent, {}};
+  ToneChoice tone = {};
 };
 
 struct OrbitCall : VisibilityCall {
@@ -32,7 +32,7 @@ struct FileCall {
   std::string file, folder;
   PartCall part;
   bool json = false, dry_run = false;
-  ToneChoice tone = {usual_percent, {}};
+  ToneChoice tone = {};
 };
 
 std::vector<double> positions_of(const std::string& text) {

@@ -51,6 +51,7 @@ std::size_t setting_of(const StudyPart& part, const PictureWish& wish) {
 }
 
 // A file name of letters, digits, dots and dashes that no other wish has.
+constexpr const char* same_end = "-same.png";  // by one white for all
 std::string file_of(const studies::StudyFile& study, const PictureWish& wish) {
   std::string stem = wish.name;
   for (char& c : stem) {
@@ -218,8 +219,13 @@ void draw_pictures(const PictureTask& task, const studies::BasisView* view,
   for (const PictureWish* wish : own_wishes(task)) {
     if (view != nullptr && !is_there(task, *wish)) draw(task, *wish, *view);
     const std::string stem = file_of(task.study, *wish);
-    figures.push_back(
-        {{stem + ".png", wish->title}, wish->name, stem + ".exr", !by_cctv(wish->shows), {}});
+    figures.push_back({{stem + ".png", wish->title},
+                       wish->name,
+                       stem + ".exr",
+                       !by_cctv(wish->shows),
+                       {},
+                       {},
+                       {}});
   }
 }
 
@@ -230,14 +236,22 @@ void expose_figures(const std::filesystem::path& folder, const ToneChoice& tone,
   for (FigureEntry& figure : figures) {
     if (figure.clean) clean.emplace_back(&figure, base::read_exr(folder / figure.exr).image);
   }
+  if (clean.empty()) return;
   for (const auto& [figure, image] : clean) images.push_back(&image);
-  std::optional<double> white;
-  if (tone.shared()) white = white_of(tone, images);
+  const ToneChoice usual{usual_percent, {}, tone.curve};
+  const double white = white_of(tone.shared() ? tone : usual, images);
   for (const auto& [figure, image] : clean) {
-    const base::ToneMapped shown =
-        white ? base::expose(image, *white, tone.curve) : base::tone_map(image);
-    base::write_png(folder / figure->file, image.width, image.height, 3, shown.rgb);
-    figure->white_cd_m2 = white;
+    const base::ToneMapped same = base::expose(image, white, tone.curve);
+    const base::ToneMapped shown = tone.shared() ? same : base::tone_map(image);
+    const auto write = [&, &picture = image](const std::string& file, const base::ToneMapped& as) {
+      base::write_png(folder / file, picture.width, picture.height, 3, as.rgb);
+    };
+    write(figure->file, shown);
+    figure->white_cd_m2 = tone.shared() ? white : shown.report.white_cd_per_m2;
+    if (tone.shared() || clean.size() < 2) continue;
+    figure->same_file = std::filesystem::path(figure->file).replace_extension().string() + same_end;
+    figure->same_white_cd_m2 = white;
+    write(figure->same_file, same);
   }
 }
 

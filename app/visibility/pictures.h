@@ -36,8 +36,8 @@ struct PictureTask {
 void draw_pictures(const PictureTask& task, const studies::BasisView* view,
                    std::vector<FigureEntry>& figures);
 
-// Writes the PNGs of the clean pictures among a study's figures, of their EXR files: of one white
-// for all, or each by its own curve; fills white_cd_m2.
+// Writes the PNGs of the clean pictures among a study's figures, of their EXR files: each by its own
+// white, and again by one white for all; or, where `tone` has one, only by that. Fills the whites.
 void expose_figures(const std::filesystem::path& folder, const ToneChoice& tone,
                     std::vector<FigureEntry>& figures);
 

@@ -8,6 +8,9 @@
 
 #include "app/parts/result_cache.h"
 #include "app/study/results.h"
+#include "app/study/words.h"
+#include "base/error.h"
+#include "scenes/sky/orbit.h"
 #include "scenes/text/message_text.h"
 #include "studies/error/error_budget.h"
 
@@ -94,6 +97,42 @@ void add_notes_of_scene(const StudyPart& part, const std::string& scene,
   }
 }
 
+constexpr double quarter_turns_deg[] = {0.0, 90.0, 180.0, 270.0};
+
+std::optional<OrbitEntry> orbit_entry(const scenes::Scene& scene) {
+  if (!scene.orbit) return std::nullopt;
+  const scenes::Orbit& orbit = *scene.orbit;
+  OrbitEntry entry;
+  entry.altitude_km = orbit.altitude_m / 1000.0;
+  entry.beta_deg = orbit.beta_deg;
+  entry.period_s = scenes::orbit_period_s(orbit.altitude_m);
+  entry.position_deg = orbit.position_deg;
+  entry.attitude = orbit.attitude.empty() ? "table" : orbit.attitude;
+  if (orbit.attitude == scenes::inertial_attitude) {
+    entry.inertial_as = orbit.inertial_as;
+    entry.inertial_at_deg = orbit.inertial_at_deg;
+  }
+  const scenes::Sun usual;
+  const scenes::Eclipse eclipse =
+      scenes::find_eclipse(orbit, (scene.sun ? *scene.sun : usual).angular_radius_deg);
+  const auto take = [](const std::optional<scenes::ShadowSpan>& span, auto& arcs) {
+    if (span) arcs.emplace_back(span->begin_deg, span->end_deg);
+  };
+  take(eclipse.umbra, entry.umbra_deg);
+  take(eclipse.penumbra, entry.penumbra_deg);
+  for (const double position_deg : quarter_turns_deg) {
+    try {
+      const scenes::OrbitState at = scenes::orbit_state(orbit, position_deg);
+      // n = r x v, all in the scene's frame, whose z is the bay's axis.
+      const Vec3 normal = glm::cross(-at.earth, at.velocity);
+      entry.bay.push_back({position_deg, -at.earth.z, at.velocity.z, normal.z});
+    } catch (const base::Error&) {
+      // A table of attitudes need not reach there.
+    }
+  }
+  return entry;
+}
+
 }  // namespace
 
 StudyResults begin_results(const studies::StudyFile& study,
@@ -105,7 +144,8 @@ StudyResults begin_results(const studies::StudyFile& study,
   Json digests = Json::object();
   for (const StudyPart* part : parts) {
     const std::size_t scene = results.scenes.size();
-    results.scenes.push_back({part->id, part->loaded.scene.name, part->path, {}});
+    results.scenes.push_back(
+        {part->id, part->loaded.scene.name, part->path, {}, orbit_entry(part->loaded.scene)});
     digests[part->id] = scene_cache_key(part->loaded);
     for (const std::string& name : part->targets) {
       if (target_number(results, name) == results.targets.size()) results.targets.push_back(name);
@@ -142,7 +182,8 @@ void add_camera(StudyResults& results, const CameraFindings& found) {
     }
   }
   for (const ThumbnailEntry& small : found.thumbnails) {
-    results.thumbnails.push_back({first + small.condition, camera, small.file, small.monitor});
+    results.thumbnails.push_back(
+        {first + small.condition, camera, small.file, small.monitor, small.white_cd_m2});
   }
 }
 
@@ -170,7 +211,7 @@ std::vector<std::string> notes_of(const StudyResults& results,
         "sphere, coarse where a camera sees it directly or in a mirror.");
   }
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    const std::string scene = parts.size() > 1 ? parts[k]->loaded.scene.name + ": " : std::string();
+    const std::string scene = parts.size() > 1 ? scene_title(results, k) + ": " : std::string();
     add_notes_of_scene(*parts[k], scene, limits[k], notes);
   }
   for (const CameraEntry& camera : results.cameras) {
@@ -178,8 +219,10 @@ std::vector<std::string> notes_of(const StudyResults& results,
     const std::string limit = wanted && *camera.relative_noise > *wanted
                                   ? ", where the scene wants " + scenes::percent(*wanted)
                                   : std::string();
+    const std::string in =
+        parts.size() > 1 ? " in " + scene_title(results, camera.scene) : std::string();
     notes.push_back(
-        fmt::format("Pictures of camera {}: {}{}.", camera.name, camera.error_text, limit));
+        fmt::format("Pictures of camera {}{}: {}{}.", camera.name, in, camera.error_text, limit));
   }
   if (!results.complete)
     notes.push_back("The study was stopped before its end; run it again to go on.");

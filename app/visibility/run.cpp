@@ -177,7 +177,6 @@ void note_unused(const StudyTask& task) {
   if (placed && !study.positions_deg.empty()) {
     note("note: orbit.position_deg has no effect: the study goes to positions of its own");
   }
-  note_unused_curve(task.tone, false);
 }
 
 // The scenes of the task, and its name and pictures where it says nothing of them.

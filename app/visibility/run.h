@@ -16,13 +16,13 @@ namespace earthshine::app {
 inline constexpr const char* results_table = "results.csv";
 
 inline constexpr const char* study_tone_help =
-    "; default auto, one white for all pictures of the study together";
+    "; default own, each picture by its own white, and by one white for all at the report's button";
 
 struct StudyTask {
   studies::StudyFile study;
   std::string folder;
-  std::string command;                    // what was called, for the report
-  ToneChoice tone = {usual_percent, {}};  // of the clean pictures, together
+  std::string command;   // what was called, for the report
+  ToneChoice tone = {};  // of the clean pictures
   PartCall part = {};
 };
 

@@ -14,6 +14,8 @@ namespace earthshine::app {
 namespace {
 
 constexpr int widest_px = 160;
+// Of a camera with no more conditions each one in which a target that is not hidden is missed is pictured.
+constexpr std::size_t most_pictured = 36;
 
 double degrees_apart(double a, double b) { return std::abs(std::remainder(a - b, 360.0)); }
 
@@ -55,14 +57,17 @@ std::vector<Value> shrunk(const std::vector<Value>& from, int width, int height,
 
 int step_of(int width) { return (width + widest_px - 1) / widest_px; }
 
-void write_small(const std::filesystem::path& path, const base::Image& radiance) {
+// Its white, cd/m^2.
+double write_small(const std::filesystem::path& path, const base::Image& radiance) {
   const int step = step_of(radiance.width);
   base::Image small{radiance.width / step, radiance.height / step, {}};
   for (const char* name : {"R", "G", "B"}) {
     small.add(name) =
         shrunk<float, float>(radiance.find(name)->values, radiance.width, radiance.height, 1, step);
   }
-  base::write_png(path, small.width, small.height, 3, base::tone_map(small).rgb);
+  const base::ToneMapped shown = base::tone_map(small);
+  base::write_png(path, small.width, small.height, 3, shown.rgb);
+  return shown.report.white_cd_per_m2;
 }
 
 void write_small(const std::filesystem::path& path, const degrade::Result& shown) {
@@ -104,15 +109,22 @@ Json bytes_of_all(const PictureTask& task, const std::vector<std::size_t>& condi
   return bytes;
 }
 
-void draw_small(const PictureTask& task, const studies::BasisView& view, std::size_t condition) {
+double draw_small(const PictureTask& task, const studies::BasisView& view, std::size_t condition) {
   const std::size_t places = task.part.basis->places().size();
   const base::Image radiance =
       studies::weighted_sum(view.layers, task.part.basis->groups().names,
                             task.part.basis->weights(condition % places, condition / places));
   const std::vector<std::string> files = files_of(task, condition);
-  write_small(task.folder / files.front(), radiance);
   if (task.camera.cctv)
     write_small(task.folder / files.back(), run_chain(*task.camera.cctv, radiance));
+  return write_small(task.folder / files.front(), radiance);
+}
+
+bool misses_one(const std::vector<TargetFindings>& targets) {
+  return std::any_of(targets.begin(), targets.end(), [](const TargetFindings& target) {
+    const studies::Verdict verdict = target.sight.verdict;
+    return verdict == studies::Verdict::Doubtful || verdict == studies::Verdict::NotSeen;
+  });
 }
 
 }  // namespace
@@ -127,7 +139,8 @@ std::vector<std::size_t> pictured_conditions(const StudyPart& part, const Judged
     const std::size_t place = k % places;
     if (!judged[k]) continue;
     if (!along || place == 0 || place == noon || place == midnight || !judged[k - 1] ||
-        !same_verdicts(*judged[k], *judged[k - 1])) {
+        !same_verdicts(*judged[k], *judged[k - 1]) ||
+        (judged.size() <= most_pictured && misses_one(*judged[k]))) {
       pictured.push_back(k);
     }
   }
@@ -146,17 +159,22 @@ std::vector<ThumbnailEntry> draw_thumbnails(const CameraWork& work, const studie
                                             const Judged& judged) {
   const PictureTask& task = work.pictures();
   const std::vector<std::size_t> conditions = pictured_conditions(task.part, judged);
+  const ResultCache store(task.folder / points_folder);
+  const Json key = key_of(work, conditions);
+  std::vector<double> whites(conditions.size());
   if (view != nullptr && !thumbnails_are_there(work, judged)) {
     base::parallel_chunks(conditions.size(), 1, [&](std::size_t k, std::size_t) {
-      draw_small(task, *view, conditions[k]);
+      whites[k] = draw_small(task, *view, conditions[k]);
     });
-    ResultCache(task.folder / points_folder)
-        .keep_facts(key_of(work, conditions), {{"bytes", bytes_of_all(task, conditions)}});
+    store.keep_facts(key, {{"bytes", bytes_of_all(task, conditions)}, {"whites", whites}});
+  } else if (std::string said; const auto facts = store.find_facts(key, said)) {
+    whites = (*facts)["whites"].get<std::vector<double>>();
   }
   std::vector<ThumbnailEntry> thumbnails;
-  for (const std::size_t k : conditions) {
-    const std::vector<std::string> files = files_of(task, k);
-    thumbnails.push_back({k, 0, files.front(), task.camera.cctv ? files.back() : std::string()});
+  for (std::size_t k = 0; k < conditions.size(); ++k) {
+    const std::vector<std::string> files = files_of(task, conditions[k]);
+    thumbnails.push_back({conditions[k], 0, files.front(),
+                          task.camera.cctv ? files.back() : std::string(), whites[k]});
   }
   return thumbnails;
 }

@@ -11,8 +11,9 @@
 namespace earthshine::app {
 
 // Of one camera: under each lamp setting the places nearest to noon and to midnight, the first one,
-// and each at which the verdict on a target is another than at the place before; of a study without
-// an orbit all conditions.
+// each at which the verdict on a target is another than at the place before, and, of a camera with
+// few conditions, each at which a target that is not hidden is missed; of a study without an orbit all
+// conditions.
 [[nodiscard]] std::vector<std::size_t> pictured_conditions(const StudyPart& part,
                                                            const Judged& judged);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One bar of choices for the whole page: camera, target, lamps and verdict.
+// One bar of choices for the whole page: scene, camera, target, lamps and verdict.
 
 const names = (values) => [...new Set(values)].filter((value) => value !== "");
 
@@ -25,21 +25,25 @@ const valuesOf = (key) => {
 
 const apply = (chosen) => {
   const fits = (key, value) => !chosen[key] || value === undefined || chosen[key] === value;
+  // Of a part that belongs to one scene or lamp setting.
+  const under = ({ dataset }) => fits("scene", dataset.scene || undefined) && fits("lamps", dataset.lamps || undefined);
   for (const table of document.querySelectorAll("table.matrix, table.figures, table.ledger")) {
     const columns = ["camera", "target", "verdict"].map((key) => [key, columnOf(table, key)]);
     let shown = 0;
     for (const row of table.tBodies[0].rows) {
-      row.hidden = !columns.every(([key, at]) => at < 0 || fits(key, row.cells[at].textContent));
+      row.hidden =
+        !columns.every(([key, at]) => at < 0 || fits(key, row.cells[at].textContent)) || !under(row);
       if (!row.hidden) ++shown;
     }
-    const holder = table.closest("[data-lamps]");
-    holder.hidden = shown === 0 || !fits("lamps", holder.dataset.lamps || undefined);
+    const holder = table.closest(".rows, [data-scene]");
+    holder.hidden = shown === 0 || !under(holder);
     const reading = holder.nextElementSibling;
     if (reading?.matches(".reading")) reading.hidden = holder.hidden;
   }
   for (const figure of document.querySelectorAll(".timeline")) {
-    figure.hidden = !["camera", "target", "lamps"].every((key) => fits(key, figure.dataset[key]));
+    figure.hidden = !["camera", "scene", "lamps"].every((key) => fits(key, figure.dataset[key]));
   }
+  for (const part of document.querySelectorAll(".target")) part.hidden = !fits("target", part.dataset.target);
   // A verdict leaves the matrix whole and fades the other cells.
   for (const cell of document.querySelectorAll("table.matrix td[data-r]")) {
     cell.classList.toggle("faded", !fits("verdict", verdictText(cell)));
@@ -65,11 +69,12 @@ const select = (label, key, values, changed) => {
 };
 
 export const addFilters = () => {
-  const lamps = [...document.querySelectorAll("[data-lamps]")].map((part) => part.dataset.lamps);
+  const all = (key) => names([...document.querySelectorAll(`[data-${key}]`)].map((part) => part.dataset[key]));
   const choices = [
+    ["Scene", "scene", all("scene")],
     ["Camera", "camera", valuesOf("camera")],
     ["Target", "target", valuesOf("target")],
-    ["Lamps", "lamps", names(lamps)],
+    ["Lamps", "lamps", all("lamps")],
     ["Verdict", "verdict", valuesOf("verdict")],
   ].filter(([, , values]) => values.length > 1);
   if (choices.length === 0) return;

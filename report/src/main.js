@@ -2,7 +2,7 @@
 // Adds to a page that is complete without it: plots, sliders, sorting, filters, cell by cell
 // reading of the matrix. Everything it shows is taken from the page.
 import { addFilters } from "./filter.js";
-import { foldLongSections } from "./fold.js";
+import { fitPhone } from "./fold.js";
 import { enhanceMatrices } from "./matrix.js";
 import { enhancePairs } from "./pairs.js";
 import { preparePrinting } from "./print.js";
@@ -16,5 +16,5 @@ enhanceMatrices();
 enhancePairs();
 const timelines = drawTimelines(data.timelines);
 addFilters();
-foldLongSections();
+fitPhone();
 preparePrinting(timelines);

@@ -21,9 +21,9 @@ const describe = (table, cell) => {
   for (let k = 4; k < figures.cells.length; ++k) {
     const value = figures.cells[k].textContent.trim();
     if (value === "–") continue;
-    const why = titles[k].textContent === "why not";
-    if (why) reason = ` ${value[0].toUpperCase()}${value.slice(1)}.`;
-    else told.push(`${titles[k].textContent}: ${value};`);
+    const title = titles[k].textContent;
+    if (title === "decided by" || title === "why not") reason += ` ${value[0].toUpperCase()}${value.slice(1)}.`;
+    else told.push(`${title}: ${value};`);
   }
   return [text + reason, told.join(" ").replace(/;$/, ".")];
 };

@@ -1,68 +1,80 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair's pictures on top of each other under a slider, in place of side by side.
+// Pairs of the page's pictures on top of each other under a slider, and the buttons that show them
+// side by side or all by one exposure.
 import "img-comparison-slider";
 
+const root = document.documentElement;
+
+// What a picture shows at present: by its own white, or by one for all.
+const shown = (figure) =>
+  (root.classList.contains("same-exposure") && figure.querySelector("img.same")) || figure.querySelector("img.own");
+
 const enhance = (pair) => {
-  const sides = pair.querySelector(".sides");
-  const [left, right] = [...sides.querySelectorAll("figure")].map((figure) => ({
-    image: figure.querySelector("img"),
-    caption: figure.querySelector("figcaption").textContent,
+  const [left, right] = [...pair.querySelectorAll("span")].map((caption, k) => ({
+    figure: document.getElementById(k === 0 ? pair.dataset.left : pair.dataset.right),
+    caption: caption.textContent,
   }));
+  const title = pair.querySelector("strong").textContent;
   const slider = document.createElement("img-comparison-slider");
   slider.setAttribute("role", "slider");
   slider.setAttribute("aria-orientation", "horizontal");
-  slider.setAttribute("aria-label", pair.querySelector("figcaption").textContent);
+  slider.setAttribute("aria-label", title);
   slider.setAttribute("aria-valuemin", "0");
   slider.setAttribute("aria-valuemax", "100");
-  const tell = () => {
+  const say = () => {
     const share = Math.round(slider.value);
     slider.setAttribute("aria-valuenow", String(share));
     slider.setAttribute("aria-valuetext", `${share} % ${left.caption}, the rest ${right.caption}`);
   };
+  const ends = document.createElement("div");
+  ends.className = "ends";
+  ends.setAttribute("aria-hidden", "true"); // the slider's value says it
   for (const [slot, side] of [["first", left], ["second", right]]) {
-    const image = side.image.cloneNode();
-    image.slot = slot;
-    image.alt = "";
-    slider.append(image);
+    side.image = Object.assign(document.createElement("img"), { slot, alt: "" });
+    slider.append(side.image);
+    side.end = document.createElement("span");
+    ends.append(side.end);
   }
-  slider.addEventListener("slide", tell);
+  const expose = () => {
+    for (const side of [left, right]) {
+      side.image.src = shown(side.figure).src;
+      const kind = shown(side.figure).className;
+      const exposure = side.figure.querySelector(`.ev.${kind}`)?.textContent ?? "";
+      side.end.textContent = exposure ? `${side.caption}: ${exposure}` : side.caption;
+    }
+  };
+  slider.addEventListener("slide", say);
   // The component knows the arrows; the ends and larger steps are what else a slider should know.
   slider.addEventListener("keydown", (event) => {
     const to = { Home: 0, End: 100, PageUp: slider.value + 10, PageDown: slider.value - 10 }[event.key];
     if (to === undefined) return;
     slider.value = Math.min(100, Math.max(0, to));
-    tell();
+    say();
     event.preventDefault();
   });
-  tell();
+  say();
+  expose();
+  pair.replaceChildren(Object.assign(document.createElement("strong"), { textContent: title }), slider, ends);
+  return expose;
+};
 
-  const captions = document.createElement("div");
-  captions.className = "ends";
-  captions.setAttribute("aria-hidden", "true"); // the slider's value says it
-  for (const side of [left, right]) {
-    const end = document.createElement("span");
-    end.textContent = side.caption;
-    captions.append(end);
-  }
-  const frame = document.createElement("div");
-  frame.className = "slider";
-  frame.append(slider, captions);
-  sides.before(frame);
+// A button that switches a class of the page on and off.
+const toggle = (text, name, changed = () => {}) => {
+  const button = Object.assign(document.createElement("button"), { type: "button", className: "toggle", textContent: text });
+  button.setAttribute("aria-pressed", "false");
+  button.addEventListener("click", () => {
+    button.setAttribute("aria-pressed", String(root.classList.toggle(name)));
+    changed();
+  });
+  return button;
 };
 
 export const enhancePairs = () => {
-  const pairs = document.querySelectorAll(".pair");
-  if (pairs.length === 0) return;
-  for (const pair of pairs) enhance(pair);
-  const toggle = document.createElement("button");
-  toggle.type = "button";
-  toggle.className = "toggle";
-  toggle.textContent = "Show pairs side by side";
-  toggle.setAttribute("aria-pressed", "false");
-  toggle.addEventListener("click", () => {
-    const apart = toggle.getAttribute("aria-pressed") === "false";
-    toggle.setAttribute("aria-pressed", String(apart));
-    document.documentElement.classList.toggle("apart", apart);
-  });
-  document.querySelector(".pairs").before(toggle);
+  const exposures = [...document.querySelectorAll(".pairs li")].map(enhance);
+  const buttons = [];
+  if (exposures.length > 0) buttons.push(toggle("Show pairs side by side", "apart"));
+  if (document.querySelector(".twice")) {
+    buttons.push(toggle("Same exposure", "same-exposure", () => exposures.forEach((expose) => expose())));
+  }
+  document.querySelector("#pictures h2")?.after(...buttons);
 };

@@ -115,6 +115,7 @@ OrbitState orbit_state(const Orbit& orbit, double position_deg) {
   const BodyAxes axes = axes_at(orbit, position_deg, state.time_s);
   state.sun = axes.in_scene(sun_at(orbit.beta_deg, position_deg));
   state.earth = axes.in_scene(-zenith);
+  state.velocity = axes.in_scene(velocity);
   // The pole is sin i along the motion's northernmost direction, 90 deg past the ascending node,
   // and cos i along the normal.
   const double i = base::radians(orbit.inclination_deg);

@@ -35,6 +35,7 @@ struct OrbitState {
   double position_deg = 0.0;  // as asked, not brought to one turn
   double time_s = 0.0;        // since orbit noon, negative before it
   Vec3 sun{0.0}, earth{0.0};  // toward the Sun and the Earth's centre
+  Vec3 velocity{0.0};         // the direction of flight
   Vec3 north{0.0};            // along the Earth's axis, northward
   double latitude_deg = 0.0;  // of the point below the spacecraft: asin(sin i sin u)
 };

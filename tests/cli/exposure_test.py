@@ -95,8 +95,22 @@ class Probe(tiny_bay.Case):
 class Study(tiny_bay.Case):
     CALL = ("study", "orbit", "bay.toml", "--at", "0,180", "--camera", "B")
 
-    def test_all_pictures_have_one_white(self):
-        study = self.printed(*self.CALL, "-o", "o")
+    def check_pixel(self, figure, file, white):
+        picture = exr.read(self.folder / "o" / figure["exr"])[3]
+        width, _, _, rgb = png.pixels((self.folder / "o" / file).read_bytes())
+        level = picture["G"]
+        at = len(level) // 2 + width // 2
+        colour = [picture[c][at] for c in "RGB"]
+        y = 0.2126 * colour[0] + 0.7152 * colour[1] + 0.0722 * colour[2]
+        x = y / white
+        shown = x if x <= 0.6 else 1 - 0.4 * math.exp(-(x - 0.6) / 0.4)
+        scaled = [shown * c / y for c in colour]
+        most = max(1.0, *scaled)
+        for k in range(3):
+            self.assertAlmostEqual(rgb[3 * at + k], srgb(scaled[k] / most), delta=2)
+
+    def test_all_pictures_may_have_one_white(self):
+        study = self.printed(*self.CALL, "-o", "o", "--exposure", "auto")
         for result in study["results"]:
             if result["target"] != "box":
                 continue
@@ -107,22 +121,20 @@ class Study(tiny_bay.Case):
         white, = {figure["white_cd_m2"] for figure in clean}
         self.assertEqual(len(clean), 2)
         for figure in clean:
-            picture = exr.read(self.folder / "o" / figure["exr"])[3]
-            width, _, _, rgb = png.pixels((self.folder / "o" / figure["file"]).read_bytes())
-            level = picture["G"]
-            at = len(level) // 2 + width // 2
-            colour = [picture[c][at] for c in "RGB"]
-            y = 0.2126 * colour[0] + 0.7152 * colour[1] + 0.0722 * colour[2]
-            x = y / white
-            shown = x if x <= 0.6 else 1 - 0.4 * math.exp(-(x - 0.6) / 0.4)
-            scaled = [shown * c / y for c in colour]
-            most = max(1.0, *scaled)
-            for k in range(3):
-                self.assertAlmostEqual(rgb[3 * at + k], srgb(scaled[k] / most), delta=2)
+            self.assertNotIn("same_file", figure)
+            self.check_pixel(figure, figure["file"], white)
 
-    def test_each_may_have_its_own(self):
-        study = self.printed(*self.CALL, "-o", "o", "--exposure", "own")
-        self.assertEqual({figure["white_cd_m2"] for figure in study["figures"]}, {None})
+    def test_each_has_its_own_and_a_common_one_at_the_button(self):
+        study = self.printed(*self.CALL, "-o", "o")
+        day, night = study["figures"]
+        # Lamps of some 1000 cd stay as they are; the Sun's 130 000 lx go.
+        self.assertGreater(day["white_cd_m2"], 5 * night["white_cd_m2"])
+        self.assertEqual(day["same_white_cd_m2"], night["same_white_cd_m2"])
+        for figure in (day, night):
+            self.check_pixel(figure, figure["same_file"], figure["same_white_cd_m2"])
+        page = (self.folder / "o" / "report.html").read_text(encoding="utf-8")
+        for figure in (day, night):
+            self.assertIn(f"EV {math.log2(figure['white_cd_m2'] / 1.2):.1f}, white at", page)
         again = self.json(*self.CALL, "-o", "o", "--exposure", "100cd/m2")
         self.assertEqual({figure["white_cd_m2"] for figure in again["figures"] if figure["clean"]}, {100.0})
 

@@ -12,6 +12,9 @@ import subprocess
 import sys
 import tempfile
 
+import report_sample
+import study_table
+
 TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 SKIPPED = 77
 
@@ -54,6 +57,15 @@ def main():
             pages.append(folder / page)
             (folder / "report.html").rename(pages[-1])
         study = folder / "study.json"
+        # Of at most 100 results: few targets, many, and two scenes.
+        for page, results in (("few.html", report_sample.study(8)), ("many.html", report_sample.study(9, targets=5, lamps=1)),
+                              ("two.html", report_sample.two_scenes(report_sample.study(4)))):
+            small = folder / "small"
+            shutil.copytree(TOP / "tests" / "data" / "report" / "pictures", small / "pictures", dirs_exist_ok=True)
+            (small / "study.json").write_text(json.dumps(study_table.closed(results)), encoding="utf-8")
+            subprocess.run([program, "report", small], check=True)
+            pages.append(folder / page)
+            (small / "report.html").rename(pages[-1])
         study.write_text(json.dumps(hostile(json.loads(study.read_text(encoding="utf-8")))), encoding="utf-8")
         subprocess.run([program, "report", folder], check=True)
         pages.append(folder / "report.html")

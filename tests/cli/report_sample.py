@@ -18,6 +18,9 @@ WAYS = ["liner", "eureca-arrays", "forward-bulkhead", "aft-bulkhead", "eureca-de
 TARGETS = ["tss", "eureca", "grapple-fixture", "keel-trunnion", "door-edge"]
 PERIOD_S = 5530.0
 ECLIPSE = (121.0, 239.0)  # degrees of the orbit without the Sun
+ORBIT = {"altitude_km": 400, "beta_deg": 6, "period_s": PERIOD_S, "position_deg": 0, "attitude": "bay-to-earth",
+         "umbra_deg": [list(ECLIPSE)], "penumbra_deg": [[117, 243]],
+         "bay": [{"position_deg": place, "zenith": -1, "forward": 0, "normal": 0} for place in (0, 90, 180, 270)]}
 
 
 def rounded(value, digits=4):
@@ -83,6 +86,11 @@ def result(condition, position, lamps, camera, target):
     c, t = CAMERAS.index(camera), TARGETS.index(target)
     if c == 1 and t == 1:
         return out_of_view(condition, camera, target)
+    if c == 1 and t == 2:
+        return out_of_view(condition, camera, target) | {
+            "verdict": "hidden", "visible_fraction": 0, "why": "hidden by arm (100 % of it)",
+            "reasons": [{"cause": "hidden", "by": "arm", "share": 1, "probability_without": None,
+                         "text": "hidden by arm (100 % of it)"}]}
     sun, lamp = sun_share(position), LAMPS[lamps]
     height = max(0.0, round(math.cos(math.radians(position - 20 * t)), 6))
     by = {"sun": 9000 * sun * height / (1 + t), "earth": 160 * sun * (0.3 + 0.7 * height) + (0.3 if t == 0 else 0.004),
@@ -112,7 +120,7 @@ def result(condition, position, lamps, camera, target):
                        "weber": rounded(0.8 * weber), "snr": rounded(2.5 * cnr), "cnr": rounded(cnr),
                        "rose": rounded(20 * cnr), "dprime": rounded(22 * cnr)} if c == 0 else None,
             "monitor": {"luminance": rounded(min(90, luminance)), "surround": rounded(min(60, luminance / 2)),
-                        "weber": rounded(0.7 * weber)} if c == 0 else None,
+                        "weber": rounded(0.7 * weber), "threshold": 0.06} if c == 0 else None,
             "eye": {"threshold": 0.012, "weber": rounded(weber), "probability": chances(3 * cycles, 3 * cnr),
                     "cycles": rounded(3 * cycles)},
             "johnson_cycles": rounded(cycles), "saturated": rounded(saturated), "crushed": 0.0,
@@ -136,7 +144,8 @@ def study(positions=24, cameras=2, targets=3, lamps=2):
                for name, condition in conditions.items() for camera in cameras for target in targets]
     return {
         "format": 2, "study": "visibility", "name": "STS-46, day and night", "version": "0.1.0", "complete": True,
-        "scenes": [{"id": "s0", "name": "STS-46 payload bay", "path": "scenes/library/sts46/day-earthshine.toml"}],
+        "scenes": [{"id": "s0", "name": "STS-46 payload bay", "path": "scenes/library/sts46/day-earthshine.toml",
+                    "orbit": ORBIT}],
         "cameras": [{"scene": "s0", "name": camera, "columns": 512, "rows": 512, "fov_deg": 40,
                      "cctv": "sit-monochrome" if k == 0 else None, "iris": "average" if k == 0 else None,
                      "relative_noise": 0.021, "error_text": "within 5 % of the exact light, as the picture states itself",
@@ -144,8 +153,8 @@ def study(positions=24, cameras=2, targets=3, lamps=2):
         "targets": targets, "conditions": list(conditions.values()), "results": results,
         "answers": [
             {"wanted": "tss>=0.9", "target": "tss", "least": 0.9, "found": True, "camera": "B", "iris": "peak",
-             "lamps": "bay lamps on", "least_factor": 0.12, "arcs_deg": [[0.0, 105.0], [255.0, 345.0]],
-             "text": "Camera B detects tss with at least 0.9 over 195 of 360 degrees with the bay lamps at 0.12 or more."},
+             "lamps": "bay lamps on", "least_factor": 0.12, "darkest_deg": 180, "arcs_deg": [[255.0, 465.0], [200.0, 210.0]],
+             "text": "Camera B detects tss with at least 0.9 over 220 of 360 degrees with the bay lamps at 0.12 or more."},
             {"wanted": "eureca>=0.99", "target": "eureca", "least": 0.99, "found": False, "camera": None, "iris": None,
              "lamps": None, "least_factor": None, "arcs_deg": [],
              "text": "No camera, iris or lamp setting detects eureca with 0.99; camera B comes nearest with 0.97."}],
@@ -154,11 +163,12 @@ def study(positions=24, cameras=2, targets=3, lamps=2):
              "right": {"file": "pictures/night-b.png", "caption": "night, bay lamps on"}},
             {"title": "Camera B by night, clean and CCTV", "left": {"file": "pictures/night-b.png", "caption": "clean"},
              "right": {"file": "pictures/night-b-cctv.png", "caption": "on the CCTV monitor"}}],
-        "figures": [{"file": "pictures/day-b.png", "caption": "Camera B by day, tone-mapped"}],
+        "figures": [{"file": "pictures/day-b.png", "caption": "Camera B by day, tone-mapped", "clean": True, "white_cd_m2": 9600,
+                     "same_file": "pictures/night-b.png", "same_white_cd_m2": 4800}],
         "thumbnails": [
             {"condition": name, "camera": cameras[0], "file": "pictures/night-b.png",
-             "monitor_file": "pictures/night-b-cctv.png"}
-            for name, condition in conditions.items() if condition["position_deg"] in (0, 180)],
+             "monitor_file": "pictures/night-b-cctv.png", "white_cd_m2": 1.2}
+            for name, condition in conditions.items() if condition["position_deg"] in (0, 180) or positions <= 12],
         "settings": {"positions": positions, "size": "512x512", "iris": "average", "wanted": "tss>=0.9, eureca>=0.99"},
         "provenance": {"program": "earthshine 0.1.0", "compiler": "GCC 12.2", "seed": 1,
                        "libraries": {"embree": "3.13.5", "Eigen": "3.4.0"}, "scene_digest": "5d3e0f1a2b4c6978"},
@@ -167,6 +177,16 @@ def study(positions=24, cameras=2, targets=3, lamps=2):
                   {"stage": "degrade", "seconds": 1.3, "rays": None}],
         "notes": ["Targets stand still; what a crew would search for is where the scene has it.",
                   "The room light on the monitor's glass is not simulated."]}
+
+
+def two_scenes(study):
+    """The same once more in another scene, with cameras of the same names."""
+    study["scenes"].append(study["scenes"][0] | {"id": "s1", "name": "open doors"})
+    study["cameras"] += [camera | {"scene": "s1"} for camera in study["cameras"]]
+    again = {condition["id"]: condition | {"id": "d" + condition["id"], "scene": "s1"} for condition in study["conditions"]}
+    study["results"] += [entry | {"condition": again[entry["condition"]]["id"]} for entry in study["results"]]
+    study["conditions"] += again.values()
+    return study
 
 
 if __name__ == "__main__":

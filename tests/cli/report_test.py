@@ -81,7 +81,7 @@ class Content(Report):
         page = Page(self.study(None, "--plain"))
         self.assertEqual(page.faults, [])
         self.assertEqual(page.all("script"), [])
-        for part in ("notes", "answers", "summary", "timelines", "pictures", "ledger", "figures", "setup", "provenance"):
+        for part in ("short", "notes", "answers", "summary", "targets", "pictures", "figures", "setup", "provenance"):
             self.assertIn({"id": part, "aria-labelledby": f"{part}-title"}, page.all("section"))
             self.assertIn({"href": f"#{part}"}, page.all("a"))
         study = report_sample.study()
@@ -89,7 +89,8 @@ class Content(Report):
                      study["answers"][0]["text"], "Camera B by night, clean and CCTV", "the tail stands in front",
                      "288 results", "bay lamps on", "Eclipse: 135° to 225°. Penumbra: 120°, 240°."):
             self.assertIn(text, page.text)
-        self.assertEqual(len(page.all("img")), 5 + 2 * len(study["thumbnails"]))
+        # Three pictures, one of them by two exposures; each is there once, however many pairs show it.
+        self.assertEqual(len(page.all("img")), 3 + 1 + 2 * len(study["thumbnails"]))
         self.assertTrue(all(image["alt"] for image in page.all("img")))
         rows = [row for row in page.all("tr") if re.fullmatch(r"r\d+", row.get("id", ""))]
         self.assertEqual(len(rows), len(study["results"]))
@@ -236,7 +237,7 @@ class Studies(Report):
             condition |= {"position_deg": None, "time_s": None, "phase": None, "sun_share": None}
         page = Page(self.study(study))
         self.assertEqual(len([t for t in page.all("table") if "matrix" in t.get("class", "")]), 1)
-        self.assertNotIn({"href": "#timelines"}, page.all("a"))
+        self.assertEqual([a for a in page.all("figure") if a.get("class") == "timeline"], [])
 
     def test_a_large_study_stays_small_enough_to_open(self):
         study = report_sample.study(positions=90, cameras=4, targets=5, lamps=3)
@@ -255,6 +256,91 @@ class Studies(Report):
         page = Page(self.study(study))
         self.assertIn("–", page.text)
         self.assertNotRegex(page.text, r"(?i)\bnan\b|\bnull\b")
+
+
+class Reading(Report):
+    """What a planner reads off the page."""
+
+    def page(self, results=None):
+        return Page(self.study(results, "--plain"))
+
+    def test_the_first_lines_state_the_orbit(self):
+        text = self.study(None, "--plain")
+        page = Page(text)
+        self.says(page.text, "0° noon, 90° the evening terminator below, 180° midnight, 270° the morning terminator",
+                  "altitude 400 km, one turn in 92.2 min", "6°. The Earth hides the Sun at 121° to 239°",
+                  "the bay faces the Earth, nose forward")
+        self.assertLess(page.text.index("the bay faces the Earth"), page.text.index("Best cameras"))
+        # The Sun is at the left, the motion counterclockwise: on a circle of 62 about (180, 108) noon is at (118, 108) and
+        # 90 deg at (180, 170), y downward. An axis toward the Earth, 26 long, goes right there and up here.
+        self.says(text, 'class="bay" d="M118.0 108.0l26.0 0.0"', 'class="bay" d="M180.0 170.0l0.0 -26.0"')
+        self.assertEqual(text.count('class="bay"'), 4)
+        study = report_sample.study(positions=4)
+        study["scenes"][0]["orbit"] |= {"attitude": "inertial", "inertial_as": "bay-to-sun", "inertial_at_deg": 90, "umbra_deg": [],
+                                        "bay": [{"position_deg": 0, "zenith": 0, "forward": 0, "normal": 1}]}
+        text = self.study(study, "--plain")
+        self.says(Page(text).text, "fixed among the stars, as at 90°, where the bay faces the Sun", "never hides all of the Sun")
+        self.says(text, '<circle class="bay" cx="118.0" cy="108.0"')  # toward the reader
+        del study["scenes"][0]["orbit"]
+        self.assertNotIn("<svg", self.study(study, "--plain"))
+
+    def test_the_figure_that_decides_stands_beside_the_reason(self):
+        def shown(verdict, weber=0.5, threshold=0.1, snr_d=9.0, cycles=0.0, visible=0.9):
+            study = report_sample.study(positions=1, cameras=1, targets=1, lamps=1)
+            entry, = study["results"]
+            entry["monitor"] |= {"weber": weber, "threshold": threshold}
+            entry["signal"] |= {"snr_d": snr_d}
+            study["results"] = [entry | {"verdict": verdict, "johnson_cycles": cycles, "visible_fraction": visible, "why": "dim"}]
+            return self.page(study).text
+        self.says(shown("not-seen", weber=-0.23, threshold=0.34), "contrast on the monitor 0.23, threshold 0.34")
+        # Digits enough to tell it from its threshold.
+        self.says(shown("not-seen", weber=0.0652, threshold=0.0654), "contrast on the monitor 0.0652, threshold 0.0654")
+        self.says(shown("not-seen", snr_d=1.4), "signal to noise 1.4, threshold 2.8")
+        # The lesser of the two: 0.5 of the threshold of contrast, 0.4 of that of noise.
+        self.says(shown("not-seen", weber=0.05, snr_d=1.12), "signal to noise 1.1, threshold 2.8")
+        # Johnson: 1 cycle for detection, 4 for recognition, 6.4 for identification.
+        for verdict, needed in (("doubtful", "1"), ("detected", "4"), ("recognised", "6.4")):
+            self.says(shown(verdict, cycles=0.7), f"cycles across it 0.7, needed {needed}")
+        self.says(shown("hidden", visible=0.02), "2 % of it visible, 10 % needed")
+
+    def test_an_answer_names_camera_and_condition(self):
+        text = self.page().text
+        # 255 to 465 deg goes over noon: angles are from 0 to below 360.
+        self.says(text, "camera B", "detected at 255° to 105°, 200° to 210°",
+                  "this camera needs 12 % of these lamps at 180°, where it is darkest")
+        study = report_sample.study(positions=4)
+        study["answers"][0]["arcs_deg"] = [[-243, 63], [0, 360]]
+        self.says(self.page(study).text, "detected at the whole orbit")
+        study["answers"][0]["arcs_deg"] = [[-243, 63]]
+        self.says(self.page(study).text, "detected at 117° to 63°")
+
+    def test_hidden_is_not_out_of_view(self):
+        text = self.page().text
+        self.says(text, "Camera C, eureca, lamps: off Outside the camera’s view.",
+                  "Camera C, grapple-fixture, lamps: off In the camera’s view, but hidden at every position.")
+        self.assertNotIn("Never in view", text)
+        study = report_sample.study(positions=4)
+        for entry in study["results"]:
+            if entry["camera"] == "C" and entry["target"] == "eureca" and entry["condition"] == "c0":
+                entry["verdict"] = "hidden"
+        self.says(self.page(study).text, "Hidden at 0°; outside the camera’s view at 90° to 270°.")
+
+    def test_scenes_are_called_by_their_names(self):
+        study = report_sample.two_scenes(report_sample.study(positions=4))
+        text = self.study(study, "--plain")
+        page = Page(text)
+        self.says(page.text, "2 scenes, 2 cameras, 3 targets", "STS-46 payload bay, lamps: off", "open doors, lamps: off")
+        self.assertNotRegex(page.text, r"\bs[01]\b")
+        self.says(page.text, "render STS-46 payload bay B")
+        self.assertEqual({a["data-scene"] for _, a in page.elements if "data-scene" in a}, {"STS-46 payload bay", "open doors"})
+        self.assertEqual(text.count("<svg"), 1)  # one orbit
+        study["scenes"][1]["name"] = study["scenes"][0]["name"]
+        study["scenes"][1]["path"] = "doors/open.toml"
+        self.says(self.page(study).text, "STS-46 payload bay (day-earthshine.toml)", "STS-46 payload bay (open.toml)")
+
+    def test_each_picture_states_its_exposure(self):
+        # White of EV 0 at ISO 100 is 78 / 65 = 1.2 cd/m^2: 9600 is 2^12.97 times, 4800 half of it.
+        self.says(self.page().text, "EV 13.0, white at 9600 cd/m²", "EV 12.0, white at 4800 cd/m²", "EV 0.0, white at 1.2 cd/m²")
 
 
 class Refusals(Report):

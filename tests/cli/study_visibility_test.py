@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """study orbit, study run and study visibility: their output."""
 import csv
+import math
 import json
 import unittest
 
@@ -11,15 +12,16 @@ class Orbit(Case):
     CALL = ("study", "orbit", "bay.toml", "--positions", "6", "--wanted", "box>=0.5", "--iris", "fixed,peak")
 
     def check_thumbnails(self, study):
-        """Small pictures: the first position, midnight, and each position at which a verdict
-        changes."""
+        """Small pictures: the first position, midnight, each position at which a verdict changes,
+        and each position at which a target that is not hidden is missed."""
         wanted = set()
         for camera in {result["camera"] for result in study["results"]}:
             before = None
             for condition in study["conditions"]:
                 verdicts = [result["verdict"] for result in study["results"]
                             if (result["camera"], result["condition"]) == (camera, condition["id"])]
-                if condition["position_deg"] in (0, 180) or verdicts != before:
+                missed = {"doubtful", "not-seen"} & set(verdicts)
+                if condition["position_deg"] in (0, 180) or verdicts != before or missed:
                     wanted.add((camera, condition["id"]))
                 before = verdicts
         shown = study["thumbnails"]
@@ -83,8 +85,10 @@ class Orbit(Case):
         answer, = study["answers"]
         self.assertTrue(answer["found"])
         self.assertIn(answer["camera"], "AB")
+        self.says(answer["text"], f"best by camera {answer['camera']}", "deg")
         for begin, end in answer["arcs_deg"]:
             self.assertLess(begin, end)
+            self.assertTrue(0 <= begin < 360 and end <= begin + 360)
         rows = list(csv.DictReader((self.folder / "o" / "results.csv").read_text(encoding="utf-8").splitlines()))
         self.assertEqual([(row["camera"], row["target"], row["verdict"]) for row in rows],
                          [(result["camera"], result["target"], result["verdict"]) for result in study["results"]])
@@ -107,6 +111,25 @@ class Orbit(Case):
         self.assertEqual([condition["position_deg"] for condition in study["conditions"]], [0, 90, 180])
         for begin, end in study["answers"][0]["arcs_deg"]:
             self.assertLessEqual(begin, end)
+
+    def test_the_orbit_is_in_the_results(self):
+        # The bay to the Sun: its axis is the Sun's direction, cos b cos p along the zenith, -cos b sin p along the motion and
+        # sin b along the normal (scenes/sky/orbit.h).
+        study = self.printed("study", "orbit", "bay.toml", "-o", "o", "--at", "0", "--camera", "B", "--set", "orbit.beta_deg=30",
+                             "--set", 'orbit.attitude="bay-to-sun"')
+        orbit = study["scenes"][0]["orbit"]
+        self.assertEqual((orbit["altitude_km"], orbit["beta_deg"], orbit["attitude"]), (425, 30, "bay-to-sun"))
+        self.assertAlmostEqual(sum(orbit["umbra_deg"][0]), 360, places=6)  # about midnight
+        for axis, (cosine, sine) in zip(orbit["bay"], ((1, 0), (0, 1), (-1, 0), (0, -1)), strict=True):
+            self.assertAlmostEqual(axis["zenith"], math.cos(math.radians(30)) * cosine, places=6)
+            self.assertAlmostEqual(axis["forward"], -math.cos(math.radians(30)) * sine, places=6)
+            self.assertAlmostEqual(axis["normal"], 0.5, places=6)
+
+    def test_the_terminal_states_the_figure_that_decides(self):
+        dim = BAY.replace("intensity = [900, 800, 700]", "intensity = 0.01").replace("intensity = 500", "intensity = 0.01")
+        self.write("dim.toml", dim)
+        text = self.done("study", "orbit", "dim.toml", "-o", "o", "--at", "180", "--camera", "A")
+        self.assertRegex(text, r"at 180 deg: (contrast on the monitor|signal to noise|cycles across it) [\d.e-]+, (threshold|needed) [\d.]+; ")
 
     def test_dry_run_writes_nothing_and_knows_what_is_there(self):
         text = self.done(*self.CALL, "-o", "o", "--dry-run")
@@ -170,6 +193,10 @@ class Run(Case):
                          [("s0", "A"), ("s0", "B"), ("s1", "A"), ("s1", "B")])
         self.assertEqual([figure["name"] for figure in study["figures"]], ["noon", "few lights", "night"])
         self.assertEqual(len(study["results"]), 2 * 4 * 2)
+        # Both have one name: their files tell them apart.
+        text = self.done("study", "run", "two.toml", "-o", "o")
+        self.says(text, "in tiny bay (bay.toml):", "in tiny bay (dim.toml):", "camera A in tiny bay (dim.toml): ")
+        self.assertNotRegex(text, r"\bs[01] ")
         # The pictures are those of the first scene.
         self.done("study", "run", "s.toml", "-o", "one")
         for figure in study["figures"]:
