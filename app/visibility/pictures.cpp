@@ -50,8 +50,9 @@ std::size_t setting_of(const StudyPart& part, const PictureWish& wish) {
   return static_cast<std::size_t>(found - settings.begin());
 }
 
-// A file name of letters, digits, dots and dashes that no other wish has.
 constexpr const char* same_end = "-same.png";  // by one white for all
+
+// A file name of letters, digits, dots and dashes that no other wish has.
 std::string file_of(const studies::StudyFile& study, const PictureWish& wish) {
   std::string stem = wish.name;
   for (char& c : stem) {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "base/files/png_file.h"
 #include "base/parallel.h"
@@ -14,7 +16,8 @@ namespace earthshine::app {
 namespace {
 
 constexpr int widest_px = 160;
-// Of a camera with no more conditions each one in which a target that is not hidden is missed is pictured.
+// A camera with at most as many conditions has a picture of each one in which a visible target is
+// missed.
 constexpr std::size_t most_pictured = 36;
 
 double degrees_apart(double a, double b) { return std::abs(std::remainder(a - b, 360.0)); }
@@ -120,6 +123,22 @@ double draw_small(const PictureTask& task, const studies::BasisView& view, std::
   return write_small(task.folder / files.front(), radiance);
 }
 
+// Of the small pictures, cd/m^2; nothing where one of them is missing in the folder.
+std::optional<std::vector<double>> stored_whites(const CameraWork& work,
+                                                 const std::vector<std::size_t>& conditions) {
+  const PictureTask& task = work.pictures();
+  std::string said;
+  const auto facts =
+      ResultCache(task.folder / points_folder).find_facts(key_of(work, conditions), said);
+  if (!facts || facts->value("bytes", Json()) != bytes_of_all(task, conditions)) return {};
+  const Json whites = facts->value("whites", Json());
+  const bool sound =
+      whites.is_array() && whites.size() == conditions.size() &&
+      std::ranges::all_of(whites, [](const Json& white) { return white.is_number(); });
+  if (!sound) return {};
+  return whites.get<std::vector<double>>();
+}
+
 bool misses_one(const std::vector<TargetFindings>& targets) {
   return std::any_of(targets.begin(), targets.end(), [](const TargetFindings& target) {
     const studies::Verdict verdict = target.sight.verdict;
@@ -148,27 +167,23 @@ std::vector<std::size_t> pictured_conditions(const StudyPart& part, const Judged
 }
 
 bool thumbnails_are_there(const CameraWork& work, const Judged& judged) {
-  const std::vector<std::size_t> conditions = pictured_conditions(work.pictures().part, judged);
-  std::string said;
-  const auto facts = ResultCache(work.pictures().folder / points_folder)
-                         .find_facts(key_of(work, conditions), said);
-  return facts && (*facts)["bytes"] == bytes_of_all(work.pictures(), conditions);
+  return stored_whites(work, pictured_conditions(work.pictures().part, judged)).has_value();
 }
 
 std::vector<ThumbnailEntry> draw_thumbnails(const CameraWork& work, const studies::BasisView* view,
                                             const Judged& judged) {
   const PictureTask& task = work.pictures();
   const std::vector<std::size_t> conditions = pictured_conditions(task.part, judged);
-  const ResultCache store(task.folder / points_folder);
-  const Json key = key_of(work, conditions);
-  std::vector<double> whites(conditions.size());
-  if (view != nullptr && !thumbnails_are_there(work, judged)) {
+  std::optional<std::vector<double>> stored = stored_whites(work, conditions);
+  const bool draws = view != nullptr && !stored;
+  std::vector<double> whites = stored ? std::move(*stored) : std::vector<double>(conditions.size());
+  if (draws) {
     base::parallel_chunks(conditions.size(), 1, [&](std::size_t k, std::size_t) {
       whites[k] = draw_small(task, *view, conditions[k]);
     });
-    store.keep_facts(key, {{"bytes", bytes_of_all(task, conditions)}, {"whites", whites}});
-  } else if (std::string said; const auto facts = store.find_facts(key, said)) {
-    whites = (*facts)["whites"].get<std::vector<double>>();
+    ResultCache(task.folder / points_folder)
+        .keep_facts(key_of(work, conditions),
+                    {{"bytes", bytes_of_all(task, conditions)}, {"whites", whites}});
   }
   std::vector<ThumbnailEntry> thumbnails;
   for (std::size_t k = 0; k < conditions.size(); ++k) {

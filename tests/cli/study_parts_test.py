@@ -80,10 +80,11 @@ class StudyParts(StudyPartsCase):
                     for part in [*order, order[0]]:
                         out = self.done(*call, folder, "--part", f"{part}/{count}", "-q", "-j", 1 + part % 2)
                         self.assertEqual(out, "")
-                    # The merge writes the PNGs of clean pictures, which have a common white, and
-                    # the small pictures, whose selection depends on all verdicts.
+                    # The merge writes the PNGs of clean pictures, of which each has a version by a
+                    # common white, and the small pictures, whose selection depends on all verdicts.
                     figures = whole.get("study.json", {}).get("figures", [])
-                    clean = {figure["file"] for figure in figures if figure["clean"]}
+                    clean = {figure[key] for figure in figures if figure["clean"]
+                             for key in ("file", "same_file") if key in figure}
                     clean |= {file for file in whole if file.startswith("pictures/small-")}
                     self.assertEqual(set(self.results(folder)) - {"pictures"},
                                      {file for file in whole if file.startswith("pictures")} - clean)
