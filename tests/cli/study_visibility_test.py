@@ -113,13 +113,19 @@ class Orbit(Case):
             self.assertLessEqual(begin, end)
 
     def test_the_orbit_is_in_the_results(self):
-        # The bay to the Sun: its axis is the Sun's direction, cos b cos p along the zenith, -cos b sin p along the motion and
-        # sin b along the normal (scenes/sky/orbit.h).
+        # The bay to the Sun: its axis is the Sun's direction, cos b cos p along the zenith, -cos b sin p along the motion
+        # and sin b along the normal (scenes/sky/orbit.h). The Sun's centre is an angle t from the Earth's where
+        # cos t = -cos b cos p; with radii E (sin E = 6371 / 6796) and S = 0.2666 deg the umbra has t < E - S and the
+        # penumbra t < E + S, which differ by 0.63 deg.
         study = self.printed("study", "orbit", "bay.toml", "-o", "o", "--at", "0", "--camera", "B", "--set", "orbit.beta_deg=30",
                              "--set", 'orbit.attitude="bay-to-sun"')
         orbit = study["scenes"][0]["orbit"]
         self.assertEqual((orbit["altitude_km"], orbit["beta_deg"], orbit["attitude"]), (425, 30, "bay-to-sun"))
-        self.assertAlmostEqual(sum(orbit["umbra_deg"][0]), 360, places=6)  # about midnight
+        earth = math.degrees(math.asin(6371 / 6796))
+        for name, seen in (("umbra_deg", earth - 0.2666), ("penumbra_deg", earth + 0.2666)):
+            half = math.degrees(math.acos(math.cos(math.radians(seen)) / math.cos(math.radians(30))))
+            for angle, expected in zip(orbit[name][0], (180 - half, 180 + half), strict=True):
+                self.assertAlmostEqual(angle, expected, delta=0.02)
         for axis, (cosine, sine) in zip(orbit["bay"], ((1, 0), (0, 1), (-1, 0), (0, -1)), strict=True):
             self.assertAlmostEqual(axis["zenith"], math.cos(math.radians(30)) * cosine, places=6)
             self.assertAlmostEqual(axis["forward"], -math.cos(math.radians(30)) * sine, places=6)
