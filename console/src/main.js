@@ -248,15 +248,14 @@ globalThis.earthshineConsole = {
       context.drawImage(card, 0, 0);
       bytes = context.getImageData(0, 0, view.columns, view.rows).data;
     }
-    return { columns: view.columns, rows: view.rows, sums: sums.map((plane) => [...plane]), bytes: [...bytes], byCard: Boolean(card) };
+    return { columns: view.columns, rows: view.rows, sums, bytes, tone, byCard: Boolean(card) };
   },
   async monitor(text) {
     const of = stateOfText(text), light = lightOf(await viewOf(of.camera), of);
     const found = monitorOf(light, of, { off: null, frozen: 0, live: 0 }[of.noise]);
     const { screen, exposure, white } = found;
     return {
-      columns: screen.columns, rows: screen.rows, channels: screen.planes.length, exposure, white,
-      viewed: screen.planes.map((plane) => [...plane]), bytes: [...screenBytes(found, null)],
+      columns: screen.columns, rows: screen.rows, planes: screen.planes, exposure, white, bytes: screenBytes(found, null),
     };
   },
   async targets(text) {
