@@ -30,7 +30,7 @@ const targetFigures = (light, state) => {
     found.snrD = Math.abs(s - b) / (spread || 1e-12);
     const contrast = Math.abs(s - b) / Math.max(b, 1e-12);
     const seen = found.snrD >= 2.8 && contrast >= 0.02;
-    found.verdict = seen && target.black_back < 0.5 * target.pixels ? "stands out" : found.snrD >= 1.5 && contrast >= 0.01 ? "doubtful" : "lost";
+    found.verdict = seen && target.black_back < 0.5 * target.pixels ? "clear" : found.snrD >= 1.5 && contrast >= 0.01 ? "doubtful" : "lost";
     return found;
   });
 };
