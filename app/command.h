@@ -60,6 +60,7 @@ struct Command {
 [[nodiscard]] Command add_plan(CLI::App& program);
 [[nodiscard]] Command add_inspect(CLI::App& program);
 [[nodiscard]] Command add_relight(CLI::App& program);
+[[nodiscard]] Command add_console(CLI::App& program);
 // `degrade` itself, and `degrade certify`.
 [[nodiscard]] std::vector<Command> add_degrade(CLI::App& program);
 [[nodiscard]] Command add_certify(CLI::App& degrade);

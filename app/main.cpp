@@ -126,6 +126,7 @@ int run(std::vector<std::string> arguments, const Workers& workers) {
   commands.push_back(add_fit_phong(program));
   for (Command& part : add_study(program)) commands.push_back(std::move(part));
   commands.push_back(add_report(program));
+  commands.push_back(add_console(program));
   int exit_code = 0;
   commands.push_back(add_merge(
       program, [&exit_code](const std::vector<std::string>& call) { exit_code = run(call, {}); }));

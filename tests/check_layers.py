@@ -25,7 +25,7 @@ ROOMS = {
     "studies": [".", "cost", "error", "surfaces", "steer", "targets", "light", "sight", "why", "orbit",
                 "compare", "accuracy"],
     "app": [".", "parts", "cctv", "call", "render", "tools", "study", "report", "views", "visibility", "compare",
-            "accuracy"],
+            "accuracy", "console"],
 }
 LAYERS = list(ROOMS)
 MOST_FILES = 20  # in a room
@@ -41,6 +41,7 @@ OWNERS = {
     "Open MPI": (r"mpi\.h", ["base/ranks/open_mpi.cpp"]),
     "toml++": (r"toml(\+\+|plusplus)", ["scenes/text/toml_file.cpp"]),
     "libpng": (r"png\.h", ["base/files/png_file.cpp", "base/pixels/png_pixels.cpp"]),
+    "zlib": (r"zlib\.h", ["base/files/deflate.cpp"]),
     "libjpeg-turbo": (r"j(peglib|config|error|morecfg)\.h", ["base/pixels/jpeg_pixels.cpp"]),
     "tinygltf": (r"tiny_?gltf", ["scenes/mesh/gltf/*"]),
     "HDF5": (r"(hdf5(_hl)?|H5\w*)\.h", ["base/files/hdf5_handle.h"]),

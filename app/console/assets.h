@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// The console's page without its data, from console/ by the build: no library, no Node.js.
+#pragma once
+
+#include <string_view>
+
+namespace earthshine::app {
+
+[[nodiscard]] std::string_view console_style();
+[[nodiscard]] std::string_view console_body();
+[[nodiscard]] std::string_view console_script();
+// "sha256-…" of the script, as a content security policy names it.
+[[nodiscard]] std::string_view console_script_hash();
+
+}  // namespace earthshine::app

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the lighting console shows: each camera's light by source, drawn to the scene's error, and
+// where its targets stand.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/study/study.h"
+#include "app/views/scene.h"
+#include "base/image.h"
+#include "studies/targets/target_view.h"
+
+namespace earthshine::app {
+
+// A fader: a lamp, a light group, the Sun, the Earth or ambient light.
+struct ConsoleLight {
+  std::string name;   // that `set` of [[lamps]] and `relight --set` know
+  std::string kind;   // "lamp", "group", "sun", "earth" or "ambient"
+  std::string group;  // of a lamp in the scene
+};
+
+struct ConsoleLayer {
+  std::size_t light = 0;
+  std::optional<std::size_t> place;  // along the orbit; none: at every place
+  std::vector<float> r, g, b;        // cd/m^2 at factor 1
+};
+
+struct ConsoleView {
+  const StudyCamera* camera = nullptr;
+  double relative_noise = 0.0;  // of the picture of all lights
+  double seconds = 0.0;
+  base::Image image;  // as drawn, with a layer per light group
+  std::vector<ConsoleLayer> layers;
+  studies::ObjectMap objects;
+  std::vector<studies::TargetView> targets;
+};
+
+// The call's scene with a light group for each lamp; for each light group where the scene has more
+// than `most_faders` lamps.
+inline constexpr std::size_t most_faders = 48;
+[[nodiscard]] studies::StudyFile console_study(const StudyCall& call,
+                                               std::vector<double> positions_deg);
+
+[[nodiscard]] std::vector<ConsoleLight> console_lights(const StudyPart& part);
+
+// Draws every camera of the part in turn; `folder` stores finished pictures (StudyFrames). Throws
+// base::Error (Work) where it is interrupted.
+void draw_views(const StudyPart& part, const std::string& folder, const Common& common,
+                const std::function<void(ConsoleView)>& take);
+
+}  // namespace earthshine::app

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/console/page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/cctv/cctv.h"
+#include "app/console/assets.h"
+#include "app/console/pack.h"
+#include "app/report/text.h"
+#include "app/visibility/conditions.h"
+#include "degrade/settings/presets.h"
+#include "studies/sight/sight.h"
+
+namespace earthshine::app {
+namespace {
+
+// All settings, also those without effect: the page's controls may give them one.
+Json all_settings(const degrade::CctvCamera& camera) {
+  Json settings;
+  degrade::visit_camera_fields(camera, [&](const char* name, const auto& value, auto&&...) {
+    settings[name] = setting_json(value);
+  });
+  return settings;
+}
+
+Json model_json(const std::string& name, const degrade::CctvCamera& camera,
+                const degrade::Monitor& monitor) {
+  return {{"name", name}, {"camera", all_settings(camera)}, {"monitor", monitor_json(monitor)}};
+}
+
+Json presets_json() {
+  Json presets = Json::array();
+  for (const degrade::Preset& preset : degrade::presets()) {
+    Json& entry =
+        presets.emplace_back(model_json(std::string(preset.name), preset.camera, preset.monitor));
+    entry["about"] = preset.about;
+  }
+  return presets;
+}
+
+Json places_json(const StudyPart& part) {
+  Json places = Json::array();
+  for (const ConditionEntry& condition : conditions_of(part, 0)) {
+    places.push_back({{"position_deg", to_json(condition.position_deg)},
+                      {"time_s", to_json(condition.time_s)},
+                      {"sun_share", to_json(condition.sun_share)},
+                      {"phase", condition.phase}});
+  }
+  return places;
+}
+
+}  // namespace
+
+ConsolePage::ConsolePage(const StudyPart& part, const StudyCall& call, std::string layers_folder,
+                         const Common& common)
+    : part_(part), common_(common) {
+  Json lights = Json::array(), objects = Json::array();
+  for (const ConsoleLight& light : console_lights(part)) {
+    lights.push_back({{"name", light.name}, {"kind", light.kind}, {"group", light.group}});
+  }
+  for (const scenes::Object& object : part.loaded.scene.objects) objects.push_back(object.name);
+  std::error_code ignored;
+  const std::filesystem::path scene = std::filesystem::absolute(call.scene.path, ignored);
+  data_ = {
+      {"format", 1},
+      {"version", EARTHSHINE_VERSION},
+      {"scene", part.loaded.scene.name.empty() ? scene.stem().string() : part.loaded.scene.name},
+      {"path", scene.lexically_normal().string()},
+      {"set", call.scene.overrides},
+      {"layers_folder", std::move(layers_folder)},
+      {"lights", lights},
+      {"places", places_json(part)},
+      {"objects", objects},
+      {"presets", presets_json()},
+      {"cameras", Json::array()}};
+}
+
+std::string ConsolePage::stored(const std::string& bytes) {
+  if (bytes.empty()) return {};
+  blobs_.push_back(base64(bytes));
+  return fmt::format("b{}", blobs_.size() - 1);
+}
+
+void ConsolePage::add(const ConsoleView& view) {
+  const scenes::Camera& camera = *view.camera->camera;
+  Json layers = Json::array(), targets = Json::array();
+  for (const ConsoleLayer& layer : view.layers) {
+    const PackedLayer packed = pack_layer(layer.r, layer.g, layer.b, view.camera->columns);
+    layers.push_back({{"light", layer.light},
+                      {"place", to_json(layer.place)},
+                      {"exponent", packed.exponent},
+                      {"data", stored(packed.bytes)}});
+  }
+  for (const studies::TargetView& target : view.targets) {
+    targets.push_back({{"name", target.name},
+                       {"pixels", target.pixels},
+                       {"alone", target.pixels_alone},
+                       {"in_frame", target.in_frame},
+                       {"black_back", target.black_back.size()},
+                       {"measured", stored(pack_runs(target.measured))},
+                       {"surround", stored(pack_runs(target.surround))}});
+  }
+  const CctvSetup cctv =
+      view.camera->cctv ? *view.camera->cctv : cctv_of_camera(part_.loaded.scene, camera, common_);
+  data_["cameras"].push_back(
+      {{"name", camera.name},
+       {"columns", view.camera->columns},
+       {"rows", view.camera->rows},
+       {"fov_deg", camera.fov_deg},
+       {"relative_noise", view.relative_noise},
+       {"cctv", model_json(cctv.name, cctv.chain.camera, cctv.chain.monitor)},
+       {"layers", layers},
+       {"objects", stored(pack_objects(view.objects.object))},
+       {"targets", targets}});
+}
+
+std::string ConsolePage::html() const {
+  // Nothing may be loaded, and only the program's own script may run.
+  std::string page = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+      "style-src 'unsafe-inline'; script-src '{}'; base-uri 'none'; form-action 'none'\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<title>{}: lighting console</title>\n<style>\n{}</style>\n</head>\n<body>\n{}",
+      console_script_hash(), escaped(data_["scene"].get<std::string>()), console_style(),
+      console_body());
+  page += fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n", island(data_));
+  for (std::size_t k = 0; k < blobs_.size(); ++k) {
+    page += fmt::format("<script type=\"text/plain\" id=\"b{}\">{}</script>\n", k, blobs_[k]);
+  }
+  page += fmt::format("<script>{}</script>\n</body>\n</html>\n", console_script());
+  return page;
+}
+
+}  // namespace earthshine::app

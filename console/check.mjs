@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// node check.mjs PAGE.html EXPECTED.json [FOLDER]: opens a console's page in headless Chromium and compares its
+// pictures with the program's (tests/cli/console_browser.py writes EXPECTED.json); keyboard, link, undo, axe.
+// Screenshots go to FOLDER. Exit code 0 all well, 1 something is wrong, 77 there is no browser or no node_modules.
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { dirname, join, resolve } from "node:path";
+import { fileURLToPath, pathToFileURL } from "node:url";
+
+const skip = (why) => {
+  console.log(`skipped: ${why}`);
+  process.exit(77);
+};
+const browserPath = ["/usr/bin/chromium", "/usr/bin/google-chrome"].find((path) => existsSync(path));
+if (!browserPath) skip("no Chromium at /usr/bin/chromium");
+const modules = createRequire(join(dirname(fileURLToPath(import.meta.url)), "../report/package.json"));
+let chromium;
+try {
+  ({ chromium } = modules("playwright-core"));
+} catch {
+  skip("playwright-core is not in report/node_modules");
+}
+const axeText = readFileSync(modules.resolve("axe-core/axe.min.js"), "utf8");
+
+const [pageFile, expectedFile, folder] = process.argv.slice(2);
+if (folder) mkdirSync(folder, { recursive: true });
+const expected = JSON.parse(readFileSync(expectedFile, "utf8"));
+let faults = 0;
+const check = (holds, what, found = "") => {
+  console.log(`${holds ? "ok   " : "FAULT"} ${what}${found === "" ? "" : `: ${found}`}`);
+  if (!holds) ++faults;
+};
+
+// WebGL2 by software, so that a machine without graphics runs the shader too.
+const browser = await chromium.launch({
+  executablePath: browserPath, args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+});
+const open = async ({ fragment = "", withoutGpu = false, ...options } = {}) => {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
+  const page = await context.newPage();
+  const complaints = [];
+  page.on("console", (message) => {
+    // Software rendering is slow to read back, and says so.
+    const known = /GPU stall due to ReadPixels|Canvas2D: Multiple readback/.test(message.text());
+    if (["error", "warning"].includes(message.type()) && !known) complaints.push(message.text());
+  });
+  page.on("pageerror", (error) => complaints.push(String(error)));
+  page.on("request", (request) => {
+    if (!/^(file|data|blob):/.test(request.url())) complaints.push(`request of ${request.url()}`);
+  });
+  if (withoutGpu) {
+    await page.addInitScript(() => {
+      const real = HTMLCanvasElement.prototype.getContext;
+      HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+        return kind === "webgl2" ? null : real.call(this, kind, ...more);
+      };
+    });
+  }
+  const start = Date.now();
+  await page.goto(`${pathToFileURL(resolve(pageFile)).href}${fragment ? `#${fragment}` : ""}`);
+  await page.waitForFunction(() => /ms$/.test(document.getElementById("stamp").textContent));
+  return { page, context, complaints, seconds: (Date.now() - start) / 1000 };
+};
+const settled = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+const fragmentOf = (page) => page.evaluate(() => location.hash.slice(1));
+
+// In the page. Shares of the bytes that are those of a PNG, and off by at most one.
+const inPage = `globalThis.compareBytes = async (found, png) => {
+  const data = Uint8Array.from(atob(png), (letter) => letter.charCodeAt(0));
+  const bitmap = await createImageBitmap(new Blob([data], { type: "image/png" }), { colorSpaceConversion: "none" });
+  if (bitmap.width !== found.columns || bitmap.height !== found.rows) return { near: 0, worst: 255 };
+  const canvas = new OffscreenCanvas(bitmap.width, bitmap.height), context = canvas.getContext("2d");
+  context.drawImage(bitmap, 0, 0);
+  const wanted = context.getImageData(0, 0, bitmap.width, bitmap.height).data;
+  let equal = 0, near = 0, worst = 0;
+  for (let i = 0; i < wanted.length; ++i) {
+    const difference = Math.abs(found.bytes[i] - wanted[i]);
+    if (difference === 0) ++equal;
+    if (difference <= 1) ++near;
+    worst = Math.max(worst, difference);
+  }
+  return { equal: equal / wanted.length, near: near / wanted.length, worst };
+};
+// A half float is within 2^-11 of its value, and layers add up: 1e-3 of the sum, or half a grey level in the dark,
+// where the sRGB curve has the slope 12.92. As a share of what is allowed.
+globalThis.worstOf = (found, wanted) => {
+  const dark = 0.5 / 255 / 12.92 / found.tone.exposure;
+  let worst = 0;
+  wanted.forEach((plane, c) => plane.forEach((value, i) => {
+    worst = Math.max(worst, Math.abs(found.sums[c][i] - value) / Math.max(1e-3 * Math.abs(value), dark));
+  }));
+  return worst;
+};`;
+
+const checkClean = async (page, useGpu) => {
+  for (const one of expected.clean) {
+    const { byCard, share, worst } = await page.evaluate(async ([{ text, sums, png }, gpu]) => {
+      const found = await globalThis.earthshineConsole.clean(text, gpu);
+      return { byCard: found.byCard, share: await globalThis.compareBytes(found, png), worst: globalThis.worstOf(found, sums) };
+    }, [one, useGpu]);
+    const what = `clean ${one.text} by ${byCard ? "WebGL2" : "2D"}`;
+    check(byCard === useGpu && share.worst <= 1, `${what}: bytes within one grey level`, JSON.stringify(share));
+    if (!useGpu) check(worst <= 1, `${what}: sums within 1e-3 or half a grey level`, `${worst.toPrecision(2)} of that`);
+  }
+};
+
+const checkMonitor = async (page) => {
+  for (const one of expected.monitor) {
+    const { share, fNumber } = await page.evaluate(async ({ text, png }) => {
+      const found = await globalThis.earthshineConsole.monitor(text);
+      return { share: await globalThis.compareBytes(found, png), fNumber: found.exposure.fNumber };
+    }, one);
+    check(share.near >= 0.999, `monitor ${one.text}: within one grey level at 99.9 %`,
+      `${JSON.stringify(share)}, f/${fNumber.toPrecision(5)} for f/${one.f_number.toPrecision(5)}`);
+  }
+};
+
+const checkTargets = async (page) => {
+  for (const { text, targets } of expected.targets) {
+    const found = await page.evaluate((state) => globalThis.earthshineConsole.targets(state), text);
+    for (const { name, luminance, weber } of targets) {
+      const own = found.find((target) => target.name === name);
+      const off = luminance === null ? (own.luminance === undefined ? 0 : 1) : Math.abs(own.luminance / luminance - 1);
+      const offWeber = weber === null ? 0 : Math.abs(own.weber - weber);
+      check(off < 1e-3 && offWeber < 2e-3 * (1 + Math.abs(weber ?? 0)), `target ${name} ${text}: luminance and contrast are the study's`,
+        `${off.toPrecision(2)} ${offWeber.toPrecision(2)}`);
+    }
+  }
+};
+
+const axe = async (page, what) => {
+  await page.evaluate(axeText);
+  const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
+  check(violations.length === 0, `${what}: axe finds nothing`,
+    violations.map((v) => `${v.id} (${v.nodes.length}): ${v.nodes[0].html.slice(0, 160)}`).join("\n      "));
+};
+
+const checkUse = async () => {
+  const { page, context, complaints, seconds } = await open();
+  check(seconds < 2 * expected.patience, "the first picture stands within 2 s", `${seconds} s`);
+  const fader = page.locator(".strip:not(.master) .fader").first();
+  await fader.focus();
+  await page.keyboard.press("Home");
+  await settled(page);
+  const dark = await fragmentOf(page);
+  check(/(^|&)l\.[^=]+=0(&|$)/.test(dark), "Home on a fader turns its light off", dark);
+  await page.keyboard.press("z");
+  await settled(page);
+  check(!/l\./.test(await fragmentOf(page)), "z undoes it");
+  await page.keyboard.press("Z");
+  await settled(page);
+  check((await fragmentOf(page)) === dark, "Z redoes it");
+  await page.keyboard.press("o");
+  await settled(page);
+  check(/off\./.test(await fragmentOf(page)), "o switches the light of the fader");
+  for (const [key, part] of [["m", "view=monitor"], ["f", "top="], ["n", "noise=frozen"], ["i", "c.iris="]]) {
+    await page.keyboard.press(key);
+    await settled(page);
+    check((await fragmentOf(page)).includes(part), `${key} sets ${part}`, await fragmentOf(page));
+  }
+  if (expected.cameras > 1) {
+    await page.keyboard.press("2");
+    await page.waitForFunction(() => /camera=/.test(location.hash));
+    check(!(await fragmentOf(page)).includes("c.iris="), "2 takes the second camera as it is");
+  }
+  const text = await fragmentOf(page);
+  const again = await open({ fragment: text });
+  check((await fragmentOf(again.page)) === text, "a link opens the same state", text);
+  await again.context.close();
+  await page.keyboard.press("k");
+  await settled(page);
+  check(await page.locator("#line").isVisible(), "k keeps the picture beside the split");
+  await page.locator("#picture").focus();
+  await page.keyboard.press("ArrowRight");
+  check(/cd\/m².*at \d+, \d+/.test(await page.locator("#reading").textContent()), "arrow keys read a pixel");
+  await page.keyboard.press("c");
+  check(await page.locator("#copies").isVisible(), "c shows link, table and command");
+  await axe(page, "copies");
+  await page.keyboard.press("Escape");
+  check(complaints.length === 0, "no error, no request", complaints.join("; "));
+  await context.close();
+};
+
+const checkLooks = async (name, options) => {
+  const { page, context, complaints } = await open(options);
+  await page.mouse.move(300, 300);
+  await settled(page);
+  await axe(page, name);
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  check(wide <= 0, `${name}: nothing sticks out`, `${wide} px`);
+  if (folder) await page.screenshot({ path: join(folder, `console-${name}.png`) });
+  check(complaints.length === 0, `${name}: no error, no request`, complaints.join("; "));
+  await context.close();
+};
+
+const checkPictures = async () => {
+  const { page, context } = await open();
+  await page.evaluate(inPage);
+  await checkClean(page, true);
+  await checkMonitor(page);
+  await checkTargets(page);
+  const words = await page.evaluate((states) => states.map((text) => globalThis.earthshineConsole.words(text)), expected.words);
+  if (expected.words_file) writeFileSync(expected.words_file, JSON.stringify(words));
+  await context.close();
+  const plain = await open({ withoutGpu: true });
+  await plain.page.evaluate(inPage);
+  await checkClean(plain.page, false);
+  check(plain.complaints.length === 0, "without WebGL2: no error", plain.complaints.join("; "));
+  await plain.context.close();
+};
+
+await checkPictures();
+await checkUse();
+await checkLooks("dark", { colorScheme: "dark" });
+await checkLooks("light", { colorScheme: "light", fragment: "view=monitor" });
+await checkLooks("false-colours", { colorScheme: "dark", fragment: "top=2" });
+await checkLooks("tablet", { colorScheme: "light", viewport: { width: 820, height: 1180 } });
+await browser.close();
+console.log(faults === 0 ? "all well" : `${faults} faults`);
+process.exit(faults === 0 ? 0 : 1);
