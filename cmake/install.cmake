@@ -29,7 +29,8 @@ install(FILES ${pages}/earthshine.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish
 
 # The libraries: static, with the headers of each floor.
 get_property(libraries GLOBAL PROPERTY EARTHSHINE_LIBRARIES)
-install(TARGETS ${libraries} earthshine_flags EXPORT EarthshineTargets ARCHIVE COMPONENT earthshine-dev)
+set_target_properties(earthshine_alone PROPERTIES EXPORT_NAME alone)
+install(TARGETS ${libraries} earthshine_alone earthshine_flags EXPORT EarthshineTargets ARCHIVE COMPONENT earthshine-dev)
 foreach(floor base scenes radiosity raytrace degrade studies)
   install(DIRECTORY ${floor} DESTINATION include/earthshine COMPONENT earthshine-dev FILES_MATCHING PATTERN "*.h"
     PATTERN "library" EXCLUDE)
