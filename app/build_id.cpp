@@ -6,6 +6,7 @@
 #include <link.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <span>
 #include <string_view>
@@ -40,8 +41,20 @@ std::string id_among(std::span<const std::byte> notes) {
   return {};
 }
 
-// The program itself comes first in the list; libraries after it are not looked at.
+bool holds(const dl_phdr_info& object, const void* address) {
+  const auto at = reinterpret_cast<std::uintptr_t>(address);
+  for (int k = 0; k < object.dlpi_phnum; ++k) {
+    const ElfW(Phdr)& segment = object.dlpi_phdr[k];
+    const std::uintptr_t start = object.dlpi_addr + segment.p_vaddr;
+    if (segment.p_type == PT_LOAD && at >= start && at - start < segment.p_memsz) return true;
+  }
+  return false;
+}
+
+// The program, or the Python module, that holds this code; other libraries are passed over.
 int look_at(dl_phdr_info* object, std::size_t, void* found) {
+  static const char here = 0;
+  if (!holds(*object, &here)) return 0;
   for (int k = 0; k < object->dlpi_phnum; ++k) {
     const ElfW(Phdr)& segment = object->dlpi_phdr[k];
     if (segment.p_type != PT_NOTE) continue;

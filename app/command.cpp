@@ -96,12 +96,28 @@ void note_faint_light(const LoadedScene& loaded) {
 
 }  // namespace
 
-LoadedScene load(const SceneInput& input, bool quiet, const AskEffects& ask) {
+LoadedScene check_scene(scenes::Scene scene) {
   LoadedScene loaded;
-  loaded.scene = scenes::read_scene(input.path, input.overrides, input.overrides_at);
+  loaded.scene = std::move(scene);
   degrade::check_settings(loaded.scene);
   degrade::check_range_sensors(loaded.scene);
+  return loaded;
+}
+
+void decide_effects(LoadedScene& loaded, const WantedEffects& wanted) {
   loaded.groups = scenes::find_light_groups(loaded.scene);
+  loaded.asked = wanted.asked;
+  loaded.effects = scenes::find_effects(loaded.scene, loaded.groups, loaded.asked);
+  loaded.culled.clear();
+  if (!wanted.culls) return;
+  loaded.culled = scenes::cull_effects(
+      loaded.scene, loaded.asked, loaded.scene.quality.error.value_or(scenes::default_error),
+      radiosity::hidden_lights(loaded.scene, loaded.asked.cameras), loaded.groups, loaded.effects);
+}
+
+LoadedScene load(const SceneInput& input, bool quiet, const AskEffects& ask) {
+  LoadedScene loaded =
+      check_scene(scenes::read_scene(input.path, input.overrides, input.overrides_at));
   if (base::ranks() != nullptr) {
     Json read = Json::object({{"the program", build_id()}, {"its setting", input.overrides}});
     for (const auto& file : loaded.scene.files) read[file.string()] = digest_of_file(file);
@@ -110,22 +126,20 @@ LoadedScene load(const SceneInput& input, bool quiet, const AskEffects& ask) {
   for (const std::string& warning : loaded.scene.warnings) {
     if (!quiet) note("warning: " + warning);
   }
-  const WantedEffects wanted = ask ? ask(loaded.scene) : WantedEffects{};
-  loaded.asked = wanted.asked;
-  loaded.effects = scenes::find_effects(loaded.scene, loaded.groups, loaded.asked);
+  decide_effects(loaded, ask ? ask(loaded.scene) : WantedEffects{});
   if (!quiet) note_faint_light(loaded);
-  if (wanted.culls) {
-    loaded.culled = scenes::cull_effects(
-        loaded.scene, loaded.asked, loaded.scene.quality.error.value_or(scenes::default_error),
-        radiosity::hidden_lights(loaded.scene, loaded.asked.cameras), loaded.groups,
-        loaded.effects);
-  }
   return loaded;
 }
 
 scenes::RayQuery ray_query(LoadedScene& loaded, const scenes::SceneUse& use, bool quiet,
                            bool draws) {
   scenes::RayQuery query(loaded.scene);
+  check_input(loaded, query, use, quiet, draws);
+  return query;
+}
+
+void check_input(LoadedScene& loaded, const scenes::RayQuery& query, const scenes::SceneUse& use,
+                 bool quiet, bool draws) {
   for (const scenes::Camera* camera : use.cameras) {
     if (draws) raytrace::check_camera(loaded.scene, query, *camera);
   }
@@ -133,7 +147,6 @@ scenes::RayQuery ray_query(LoadedScene& loaded, const scenes::SceneUse& use, boo
     if (!quiet) note("warning: " + warning);
     loaded.scene.warnings.push_back(std::move(warning));
   }
-  return query;
 }
 
 bool SceneInput::wants_error() const {

@@ -59,6 +59,7 @@ struct Command {
 [[nodiscard]] Command add_form_factors(CLI::App& program);
 [[nodiscard]] Command add_plan(CLI::App& program);
 [[nodiscard]] Command add_inspect(CLI::App& program);
+[[nodiscard]] Command add_new(CLI::App& program);
 [[nodiscard]] Command add_relight(CLI::App& program);
 [[nodiscard]] Command add_console(CLI::App& program);
 // `degrade` itself, and `degrade certify`.
@@ -66,6 +67,8 @@ struct Command {
 [[nodiscard]] Command add_certify(CLI::App& degrade);
 [[nodiscard]] Command add_fit_phong(CLI::App& program);
 [[nodiscard]] Command add_report(CLI::App& program);
+[[nodiscard]] Command add_manual(CLI::App& program);
+[[nodiscard]] Command add_completion(CLI::App& program);
 // What runs a call as if it had been typed, for `merge`. Its exit code.
 using RunCall = std::function<void(const std::vector<std::string>& arguments)>;
 [[nodiscard]] Command add_merge(CLI::App& program, const RunCall& run_call);
@@ -109,14 +112,21 @@ struct WantedEffects {
   bool culls = false;  // those that cannot matter are switched off
 };
 using AskEffects = std::function<WantedEffects(const scenes::Scene&)>;
-// Warnings go to standard error unless `quiet`. The only place where a call's effects are decided.
+// Warnings go to standard error unless `quiet`.
 [[nodiscard]] LoadedScene load(const SceneInput& input, bool quiet, const AskEffects& ask = {});
 
-// The rays of what was read. Adds to its warnings what in it is surely a mistake
-// (scenes/plausible), on standard error too unless `quiet`: every command comes by its rays here.
-// draws: its cameras are checked first (raytrace::check_camera), which may throw.
+// The two steps of it. Checks the CCTV cameras and range sensors of a scene that was read.
+[[nodiscard]] LoadedScene check_scene(scenes::Scene scene);
+// The only place where a call's effects are decided, each time anew.
+void decide_effects(LoadedScene& loaded, const WantedEffects& wanted);
+
+// The rays of what was read, after check_input(): every command comes by its rays here.
 [[nodiscard]] scenes::RayQuery ray_query(LoadedScene& loaded, const scenes::SceneUse& use,
                                          bool quiet, bool draws = false);
+// Adds to its warnings what in it is surely a mistake (scenes/plausible), on standard error too
+// unless `quiet`. draws: its cameras are checked first (raytrace::check_camera), which may throw.
+void check_input(LoadedScene& loaded, const scenes::RayQuery& query, const scenes::SceneUse& use,
+                 bool quiet, bool draws = false);
 
 // Both throw base::Error (Input) where there is none. named_at: where a file or an option names it.
 [[nodiscard]] const scenes::Camera& first_camera(const scenes::Scene& scene);

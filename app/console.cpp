@@ -17,7 +17,7 @@
 namespace earthshine::app {
 namespace {
 
-std::atomic<bool> some_note_was_lost{false}, silent_now{false};
+std::atomic<bool> some_note_was_lost{false}, silent_now{false}, host_has_signals{false};
 
 bool write_whole(std::string_view text, std::FILE* stream) {
   errno = 0;
@@ -107,7 +107,8 @@ void Progress::operator()(std::size_t done, std::size_t total) {
   std::fputs(line.c_str(), stderr);
 }
 
-Interrupt::Interrupt() : active_(base::ranks() == nullptr) {
+Interrupt::Interrupt() : active_(base::ranks() == nullptr && !host_has_signals) {
+  if (host_has_signals) return;
   interrupted = false;
   if (!active_) return;
   for (std::size_t k = 0; k < before_.size(); ++k) {
@@ -122,6 +123,10 @@ Interrupt::~Interrupt() {
 }
 
 bool Interrupt::asked() { return interrupted; }
+
+void Interrupt::leave_signals_to_host() { host_has_signals = true; }
+
+void Interrupt::ask(bool asked) { interrupted = asked; }
 
 namespace {
 

@@ -70,6 +70,11 @@ class Interrupt {
   // Safe on many threads.
   [[nodiscard]] static bool asked();
 
+  // For a host that handles signals itself, as Python does: no Interrupt takes them over from then
+  // on, and the host asks for an end, or says that none is asked for.
+  static void leave_signals_to_host();
+  static void ask(bool asked);
+
   // The same for work that is kept whole or not at all: throws Left where an end is asked for.
   struct Left {};
   static void leave_if_asked() {

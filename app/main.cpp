@@ -119,14 +119,16 @@ int run(std::vector<std::string> arguments, const Workers& workers) {
   Common common;
   common.arguments = arguments;
   std::uint64_t threads = 0;
-  std::vector<Command> commands = {add_render(program),       add_solve(program),
-                                   add_form_factors(program), add_plan(program),
-                                   add_inspect(program),      add_relight(program)};
+  std::vector<Command> commands = {
+      add_render(program),  add_solve(program), add_form_factors(program), add_plan(program),
+      add_inspect(program), add_new(program),   add_relight(program)};
   for (Command& part : add_degrade(program)) commands.push_back(std::move(part));
   commands.push_back(add_fit_phong(program));
   for (Command& part : add_study(program)) commands.push_back(std::move(part));
   commands.push_back(add_report(program));
   commands.push_back(add_console(program));
+  commands.push_back(add_manual(program));
+  commands.push_back(add_completion(program));
   int exit_code = 0;
   commands.push_back(add_merge(
       program, [&exit_code](const std::vector<std::string>& call) { exit_code = run(call, {}); }));

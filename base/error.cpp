@@ -60,11 +60,14 @@ std::string to_string(const Location& location) {
 
 Error::Error(Blame blame, std::string_view where, std::string_view found, std::string_view allowed,
              std::string_view remedy)
-    : std::runtime_error(compose(where, found, allowed, remedy)), blame_(blame) {}
+    : Error(blame, Location{std::string(where)}, found, allowed, remedy) {}
 
 Error::Error(Blame blame, const Location& where, std::string_view found, std::string_view allowed,
              std::string_view remedy)
-    : Error(blame, std::string_view(to_string(where)), found, allowed, remedy) {}
+    : std::runtime_error(compose(to_string(where), found, allowed, remedy)),
+      blame_(blame),
+      parts_(std::make_shared<Parts>(
+          Parts{where, std::string(found), std::string(allowed), std::string(remedy)})) {}
 
 std::string system_reason(int error_number) {
   return std::error_code(error_number, std::generic_category()).message();

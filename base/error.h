@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -36,8 +37,16 @@ class Error : public std::runtime_error {
 
   [[nodiscard]] Blame blame() const { return blame_; }
 
+  // What the message is put together from. `where` may name an option or a setting as its file.
+  struct Parts {
+    Location where;
+    std::string found, allowed, remedy;
+  };
+  [[nodiscard]] const Parts& parts() const { return *parts_; }
+
  private:
   Blame blame_;
+  std::shared_ptr<const Parts> parts_;  // copies of an exception may not throw
 };
 
 // The system's text for an error number, e.g. "No such file or directory".

@@ -26,7 +26,14 @@ endif()
 set(earthshine_common_headers
   <algorithm> <array> <bit> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory> <numeric>
   <optional> <span> <string> <string_view> <utility> <vector> <fmt/format.h> <fmt/ranges.h> <glm/glm.hpp>)
+# Programs and the Python module are linked from the same objects. Their symbols are hidden, so that
+# calls and data are reached as directly as in a program.
+function(serve_module target)
+  set_target_properties(${target} PROPERTIES
+    POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+endfunction()
 add_library(earthshine_common OBJECT ${CMAKE_CURRENT_LIST_DIR}/common.cpp)
+serve_module(earthshine_common)
 target_link_libraries(earthshine_common PRIVATE earthshine_flags fmt::fmt glm::glm)
 target_precompile_headers(earthshine_common PRIVATE ${earthshine_common_headers})
 
@@ -35,7 +42,11 @@ function(add_layer name)
   cmake_parse_arguments(LAYER "" "" "USES;LIBRARIES;PRIVATE_LIBRARIES;SOURCES" ${ARGN})
   add_library(earthshine_${name} STATIC ${LAYER_SOURCES})
   add_library(earthshine::${name} ALIAS earthshine_${name})
-  target_include_directories(earthshine_${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  serve_module(earthshine_${name})
+  target_include_directories(earthshine_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/earthshine>)
+  set_target_properties(earthshine_${name} PROPERTIES EXPORT_NAME ${name})
+  set_property(GLOBAL APPEND PROPERTY EARTHSHINE_LIBRARIES earthshine_${name})
   list(TRANSFORM LAYER_USES PREPEND earthshine_)
   target_link_libraries(earthshine_${name}
     PUBLIC ${LAYER_USES} ${LAYER_LIBRARIES}

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Keeps the layers apart: base < scenes < radiosity < raytrace < degrade < studies < app, and their rooms.
+"""Keeps the layers apart: base < scenes < radiosity < raytrace < degrade < studies < app < python, and their
+rooms.
 
 usage: check_layers.py [ROOT]
 
@@ -26,6 +27,7 @@ ROOMS = {
                 "compare", "accuracy"],
     "app": [".", "parts", "cctv", "call", "render", "tools", "study", "report", "views", "visibility", "compare",
             "accuracy", "console"],
+    "python": ["."],
 }
 LAYERS = list(ROOMS)
 MOST_FILES = 20  # in a room
@@ -46,6 +48,7 @@ OWNERS = {
     "tinygltf": (r"tiny_?gltf", ["scenes/mesh/gltf/*"]),
     "HDF5": (r"(hdf5(_hl)?|H5\w*)\.h", ["base/files/hdf5_handle.h"]),
     "CLI11": (r"CLI/", ["app/*"]),
+    "pybind11": (r"pybind11/|Python\.h", ["python/module.cpp"]),
     "nlohmann-json": (r"nlohmann/", ["app/*", "scenes/mesh/gltf/json.cpp"]),
 }
 

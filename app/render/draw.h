@@ -4,6 +4,7 @@
 #pragma once
 
 #include "app/call/render_call.h"
+#include "base/files/exr_file.h"
 
 namespace earthshine::app {
 
@@ -20,6 +21,13 @@ struct Drawn {
                                          const raytrace::RenderOptions& options);
 [[nodiscard]] Drawn draw_picture(const Studio& studio, const scenes::Camera& camera,
                                  StageTimes& times);
+
+// Size, rays, patches and seconds of a frame, as --json reports them.
+[[nodiscard]] Json frame_json(const Studio& studio, const scenes::Camera& camera,
+                              const raytrace::Frame& frame, const StageTimes& times);
+// The header of its EXR file: provenance, place in the whole picture, stated error.
+[[nodiscard]] base::ExrHeader picture_header(const Studio& studio, const scenes::Camera& camera,
+                                             const Drawn& drawn);
 
 // Where the light at a pixel comes from: by source, with all paths, and by last bounce.
 

@@ -37,6 +37,11 @@ void add_expectation(Json& rows, const Expectation& expected);
                                const std::vector<Picture>& pictures, const StageTimes& times,
                                double cpu_seconds);
 
+// The report of `plan`, of a scene whose effects are decided for the call. ranks: of earthshine-mpi;
+// 0: one process.
+[[nodiscard]] Json plan_json(LoadedScene& loaded, const RenderCall& call, const Common& common,
+                             int ranks);
+
 // As columns; cells that a row has no value for stay empty.
 [[nodiscard]] std::string effect_text(const Json& rows);
 

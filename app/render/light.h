@@ -36,6 +36,13 @@ struct ExactCall {
   double time_limit_s = 0.0;  // 0: none
 };
 [[nodiscard]] Solved solve_as_exactly(const ExactCall& call, StageTimes& times);
+// For itself, as `solve` does: until the error that the scene names is reached, by the scene's
+// settings, or from a file of solution.h5 (empty: none). Throws base::Error (Work) where it does
+// not fit into memory.
+[[nodiscard]] Solved solve_alone(const ExactCall& call, const std::string& file, StageTimes& times);
+// The report of `solve --json`, without the error.
+[[nodiscard]] Json solve_json(const LoadedScene& loaded, const radiosity::SolveReport& report,
+                              const StageTimes& times);
 
 // Whether pictures are drawn until their own estimate is within the scene's `quality.error`.
 [[nodiscard]] bool steers(const RenderCall& call, const scenes::Scene& scene);

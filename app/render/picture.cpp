@@ -36,8 +36,10 @@ Json rays_by_light(const radiosity::SolveReport& solved) {
   return counts;
 }
 
-Json json_of(const Studio& studio, const scenes::Camera& camera, const raytrace::Frame& frame,
-             const StageTimes& times) {
+}  // namespace
+
+Json frame_json(const Studio& studio, const scenes::Camera& camera, const raytrace::Frame& frame,
+                const StageTimes& times) {
   const raytrace::RenderReport& report = frame.report;
   const raytrace::RayCounts& rays = report.rays;
   const radiosity::SolveReport& solved = studio.light.solution.report;
@@ -72,6 +74,20 @@ Json json_of(const Studio& studio, const scenes::Camera& camera, const raytrace:
   if (!studio.call.solution.empty() || studio.parts != nullptr) json["rays"].erase("direct_by");
   return json;
 }
+
+base::ExrHeader picture_header(const Studio& studio, const scenes::Camera& camera,
+                               const Drawn& drawn) {
+  const raytrace::RenderOptions& options = drawn.options;
+  const Solved& light = studio.light;
+  base::ExrHeader header = provenance_header(
+      {studio.loaded.scene, studio.call.scene.overrides, camera, options, light.solver,
+       light.solved ? &light.solution.report : nullptr, drawn.frame.report});
+  header.whole = {options.columns, options.rows, drawn.frame.window.x, drawn.frame.window.y};
+  add_errors(header, drawn);
+  return header;
+}
+
+namespace {
 
 // The single pixel of --only-pixel, layer by layer.
 Json pixel_json(const scenes::Scene& scene, const raytrace::Frame& frame) {
@@ -200,11 +216,7 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
     });
   }
   if (cctv) screen = times.measure("cctv", [&] { return run_chain(*cctv, frame.image); });
-  base::ExrHeader header = provenance_header(
-      {studio.loaded.scene, call.scene.overrides, camera, options, studio.light.solver,
-       studio.light.solved ? &studio.light.solution.report : nullptr, frame.report});
-  header.whole = {options.columns, options.rows, frame.window.x, frame.window.y};
-  add_errors(header, drawn);
+  base::ExrHeader header = picture_header(studio, camera, drawn);
   if (call.timings) add_times(header, times);
   times.measure("write", [&] {
     const HeaderTexts mark = partial_mark(header);
@@ -212,7 +224,7 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
     if (screen) write_cctv(files.cctv, *cctv, *screen, mark);
     if (!files.output.empty()) base::write_exr(files.output, frame.image, header);
   });
-  Picture picture{json_of(studio, camera, frame, times),
+  Picture picture{frame_json(studio, camera, frame, times),
                   !frame.report.stopped,
                   drawn.limit,
                   frame.report,

@@ -150,10 +150,9 @@ void add_seconds(Json& report, const LoadedScene& loaded, const RenderCall& call
   if (ranks > 0) add_ranks(report, bill, ranks, bytes);
 }
 
-Json report_of(const RenderCall& call, const Common& common, int ranks) {
-  LoadedScene loaded = load(call.scene, common.quiet, [&](const scenes::Scene& scene) {
-    return wanted_effects(call, planned_cameras(call, scene));
-  });
+}  // namespace
+
+Json plan_json(LoadedScene& loaded, const RenderCall& call, const Common& common, int ranks) {
   want_usual_error(call, loaded.scene);
   const scenes::QualityKnobs knobs = scenes::resolve_quality(loaded.scene);
   const radiosity::SolveOptions solver = solver_of(call, loaded.scene, common);
@@ -189,6 +188,15 @@ Json report_of(const RenderCall& call, const Common& common, int ranks) {
   add_seconds(report, loaded, call, common, query, ranks, bytes);
   report["warnings"] = loaded.scene.warnings;
   return report;
+}
+
+namespace {
+
+Json report_of(const RenderCall& call, const Common& common, int ranks) {
+  LoadedScene loaded = load(call.scene, common.quiet, [&](const scenes::Scene& scene) {
+    return wanted_effects(call, planned_cameras(call, scene));
+  });
+  return plan_json(loaded, call, common, ranks);
 }
 
 // Said, and not refused, as render does: rows may turn out less full.

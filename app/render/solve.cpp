@@ -86,8 +86,10 @@ Json refinement_of(const radiosity::SolveReport& report) {
   return {{"rounds", rounds}, {"rays", report.refinement_rays}};
 }
 
-Json json_of(const LoadedScene& loaded, const radiosity::SolveReport& report,
-             const StageTimes& times) {
+}  // namespace
+
+Json solve_json(const LoadedScene& loaded, const radiosity::SolveReport& report,
+                const StageTimes& times) {
   Json json;
   json["scene"] = loaded.scene.path.string();
   json["patches"] = report.patches;
@@ -110,6 +112,8 @@ Json json_of(const LoadedScene& loaded, const radiosity::SolveReport& report,
   json["warnings"] = loaded.scene.warnings;
   return json;
 }
+
+namespace {
 
 double luminous(const Json& rgb) {
   return base::luminance({rgb[0].get<double>(), rgb[1].get<double>(), rgb[2].get<double>()});
@@ -193,19 +197,24 @@ void check_call(const SolveCall& call) {
   }
 }
 
-// By the scene's settings, until an error that it names is reached, or from a file.
-Solved solve_alone(const SolveCall& call, const Common& common, const LoadedScene& loaded,
-                   const scenes::RayQuery& query, const radiosity::SolveOptions& options,
-                   StageTimes& times) {
-  if (call.solution.empty() && loaded.scene.quality.error) {
-    return solve_as_exactly({loaded, common, query, call.time_limit_s}, times);
-  }
+}  // namespace
+
+Solved solve_alone(const ExactCall& call, const std::string& file, StageTimes& times) {
+  const LoadedScene& loaded = call.loaded;
+  const radiosity::SolveOptions options = solve_options(loaded.scene, call.common);
+  const bool steered = file.empty() && loaded.scene.quality.error;
+  check_memory(loaded, call.query,
+               steered ? studies::first_surface_options(loaded.scene, *loaded.scene.quality.error,
+                                                        call.common.seed)
+                       : options,
+               nullptr, file.empty());
+  if (steered) return solve_as_exactly(call, times);
   Solved light;
   light.solver = options;
-  light.solution = solve_or_read(loaded, query, options, call.solution, times);
+  light.solution = solve_or_read(loaded, call.query, options, file, times);
   light.solved = true;
   light.surface = times.measure("error", [&] {
-    return studies::surface_error(loaded.world(query), light.solution, options);
+    return studies::surface_error(loaded.world(call.query), light.solution, options);
   });
   const std::optional<double> error = loaded.scene.quality.error;
   if (!error) return light;
@@ -215,6 +224,8 @@ Solved solve_alone(const SolveCall& call, const Common& common, const LoadedScen
   if (light.surface.known && found > *error) light.limit = studies::Limit::Given;
   return light;
 }
+
+namespace {
 
 void run(const SolveCall& call, const Common& common) {
   check_call(call);
@@ -233,10 +244,8 @@ void run(const SolveCall& call, const Common& common) {
     note(std::string("note: --time-limit has no effect: ") +
          (call.solution.empty() ? "no error is asked for" : "--solution is read as it is"));
   }
-  check_memory(loaded, query,
-               steers ? studies::first_surface_options(loaded.scene, *error, common.seed) : options,
-               nullptr, call.solution.empty());
-  const Solved light = solve_alone(call, common, loaded, query, options, times);
+  const Solved light =
+      solve_alone({loaded, common, query, call.time_limit_s}, call.solution, times);
   const radiosity::Solution& solution = light.solution;
   if (!common.quiet) {
     note_backs(solution.report);
@@ -249,7 +258,7 @@ void run(const SolveCall& call, const Common& common) {
   if (!call.mesh.empty()) {
     times.measure("write GLB", [&] { write_mesh(call.mesh, solution, loaded); });
   }
-  Json json = json_of(loaded, solution.report, times);
+  Json json = solve_json(loaded, solution.report, times);
   const double price = seconds_to_go(light, error, times.total());
   json["error"] = error_json(light, error);
   json["error"]["seconds_to_go"] = price > 0.0 ? Json(price) : Json();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // earthshine form-factors: the matrix between objects, and to the sky.
-#include "radiosity/exact/form_factors.h"
+#include "app/tools/form_factors.h"
 
 #include <fmt/format.h>
 
@@ -16,6 +16,7 @@
 #include "app/memory.h"
 #include "app/options.h"
 #include "base/error.h"
+#include "radiosity/exact/form_factors.h"
 #include "radiosity/objects/form_factors.h"
 #include "radiosity/patches/patches.h"
 #include "scenes/effects/quality.h"
@@ -26,18 +27,10 @@
 namespace earthshine::app {
 namespace {
 
-enum class Method { Auto, Rays, Exact };
-
 // Up to here `auto` takes the exact method: its time grows with the square of their number.
 constexpr std::size_t most_facets_for_auto = 1000;
 
-Method read_method(const std::string& word) {
-  if (word == "auto") return Method::Auto;
-  if (word == "rays") return Method::Rays;
-  if (word == "exact") return Method::Exact;
-  throw base::Error(base::Blame::Input, "--method", "there is no method \"" + word + "\"",
-                    "the methods are auto, rays and exact");
-}
+using Method = FactorMethod;
 
 struct FactorsCall {
   SceneInput scene;
@@ -100,12 +93,11 @@ void find_exactly(const scenes::Scene& scene, const scenes::RayQuery& query,
   }
 }
 
-Found find(const FactorsCall& call, const Common& common) {
-  if (call.raw && call.method == Method::Exact) {
+Found find(LoadedScene& loaded, Method method, bool raw, const Common& common) {
+  if (raw && method == Method::Exact) {
     throw base::Error(base::Blame::Input, "--raw", "is of rays, and --method exact casts none", {},
                       "Leave one of the two out");
   }
-  LoadedScene loaded = load(call.scene, common.quiet);
   const scenes::Scene& scene = loaded.scene;
   const scenes::QualityKnobs knobs = scenes::resolve_quality(scene);
   const auto start = std::chrono::steady_clock::now();
@@ -113,10 +105,9 @@ Found find(const FactorsCall& call, const Common& common) {
   const radiosity::Patches facets =
       radiosity::subdivide(scene, std::numeric_limits<double>::infinity());
   Found found;
-  found.is_exact =
-      call.method == Method::Exact ||
-      (call.method == Method::Auto && !call.raw && !scenes::any_passes_light_on(scene) &&
-       !scenes::any_has_holes(scene) && facets.count() <= most_facets_for_auto);
+  found.is_exact = method == Method::Exact ||
+                   (method == Method::Auto && !raw && !scenes::any_passes_light_on(scene) &&
+                    !scenes::any_has_holes(scene) && facets.count() <= most_facets_for_auto);
   if (found.is_exact) {
     found.patches = facets.count();
     find_exactly(scene, query, facets, common, found);
@@ -126,7 +117,7 @@ Found find(const FactorsCall& call, const Common& common) {
     const radiosity::Patches patches = radiosity::subdivide(scene, knobs.patch_edge_m);
     found.patches = patches.count();
     found.between = radiosity::object_form_factors_by_rays(
-        scene, query, patches, {knobs.form_factor_rays, common.seed, call.raw}, found.rays);
+        scene, query, patches, {knobs.form_factor_rays, common.seed, raw}, found.rays);
   }
   if (found.exact.disagreeing_rows > 0 && !common.quiet) {
     note(
@@ -271,6 +262,18 @@ std::string text_of(const Found& found) {
 
 }  // namespace
 
+FactorMethod factor_method(const std::string& option, const std::string& word) {
+  if (word == "auto") return Method::Auto;
+  if (word == "rays") return Method::Rays;
+  if (word == "exact") return Method::Exact;
+  throw base::Error(base::Blame::Input, option, "there is no method \"" + word + "\"",
+                    "the methods are auto, rays and exact");
+}
+
+Json form_factors_json(LoadedScene& loaded, FactorMethod method, bool raw, const Common& common) {
+  return json_of(find(loaded, method, raw, common));
+}
+
 Command add_form_factors(CLI::App& program) {
   CLI::App* parser =
       program.add_subcommand("form-factors", "Form factors between objects, and to the sky");
@@ -278,7 +281,8 @@ Command add_form_factors(CLI::App& program) {
   add_scene_options(*parser, call->scene);
   parser
       ->add_option_function<std::string>(
-          "--method", [call](const std::string& word) { call->method = read_method(word); },
+          "--method",
+          [call](const std::string& word) { call->method = factor_method("--method", word); },
           "rays; exact: analytic, without mirrors or glass; auto: exact where that is quick")
       ->type_name("auto|rays|exact");
   parser->add_flag("--raw", call->raw,
@@ -286,7 +290,8 @@ Command add_form_factors(CLI::App& program) {
   CLI::Option* json = parser->add_flag("--json", call->json, "JSON on standard output");
   parser->add_flag("--csv", call->csv, "A line per pair on standard output")->excludes(json);
   return {parser, [call](const Common& common) {
-            const Found found = find(*call, common);
+            LoadedScene loaded = load(call->scene, common.quiet);
+            const Found found = find(loaded, call->method, call->raw, common);
             print(call->json ? dump(json_of(found)) : call->csv ? csv_of(found) : text_of(found));
           }};
 }

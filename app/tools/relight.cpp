@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // earthshine relight: other lamp settings of a picture that has a layer per light group.
-#include "studies/relight.h"
+#include "app/tools/relight.h"
 
 #include <fmt/format.h>
 
@@ -16,6 +16,7 @@
 #include "base/files/png_file.h"
 #include "base/tone.h"
 #include "scenes/text/table_reader.h"
+#include "studies/relight.h"
 
 namespace earthshine::app {
 namespace {
@@ -103,6 +104,23 @@ Json report_of(const base::Image& image, const base::ExrHeader& header,
   return report;
 }
 
+}  // namespace
+
+void relight(base::ExrFile& file, const std::vector<std::string>& settings,
+             const std::string& source) {
+  const std::map<std::string, Rgb> factors = factors_of(settings);
+  studies::relight(file.image, factors, source);
+  // What was said of the error held for the lights as they were.
+  std::erase_if(file.header.numbers, [&](const auto& one) {
+    return !factors.empty() && one.first.starts_with("earthshine:error.");
+  });
+  std::string said;
+  for (const std::string& setting : settings) said += (said.empty() ? "" : " ") + setting;
+  if (!said.empty()) file.header.text.emplace_back("earthshine:relight", said);
+}
+
+namespace {
+
 void run(const RelightCall& call, const Common& common) {
   if (call.output.empty() && call.png.empty()) {
     throw base::Error(base::Blame::Input, "relight", "-o is missing", {},
@@ -113,14 +131,7 @@ void run(const RelightCall& call, const Common& common) {
   refuse_other_kind("-o", call.output, {".exr"});
   refuse_other_kind("--png", call.png, {".png"});
   base::ExrFile file = base::read_exr(call.input);
-  studies::relight(file.image, factors, call.input);
-  // What was said of the error held for the lights as they were.
-  std::erase_if(file.header.numbers, [&](const auto& one) {
-    return !factors.empty() && one.first.starts_with("earthshine:error.");
-  });
-  std::string said;
-  for (const std::string& setting : call.settings) said += (said.empty() ? "" : " ") + setting;
-  if (!said.empty()) file.header.text.emplace_back("earthshine:relight", said);
+  relight(file, call.settings, call.input);
   if (!call.output.empty()) base::write_exr(call.output, file.image, file.header);
   if (!call.png.empty()) {
     const base::ToneMapped tone = base::tone_map(file.image);

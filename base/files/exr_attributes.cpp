@@ -26,8 +26,8 @@ namespace earthshine::base {
 namespace {
 
 bool is_own_business(std::string_view name) {
-  for (std::string_view standard : {"type", "name", "view", "version", "chunkCount",
-                                    "whiteLuminance", "pixelAspectRatio", "screenWindowWidth"}) {
+  for (std::string_view standard :
+       {"type", "name", "view", "version", "chunkCount", "whiteLuminance", "pixelAspectRatio"}) {
     if (name == standard) return true;
   }
   return false;

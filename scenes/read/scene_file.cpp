@@ -111,9 +111,11 @@ Scene read_camera_file(const std::filesystem::path& path) {
   return scene;
 }
 
-Scene read_scene(const std::filesystem::path& path, std::span<const std::string> overrides,
-                 const std::optional<base::Location>& overrides_at) {
-  TomlNode tree = read_toml(path);
+namespace {
+
+Scene scene_of(TomlNode tree, const std::filesystem::path& path,
+               std::span<const std::string> overrides,
+               const std::optional<base::Location>& overrides_at) {
   refuse_study(tree);
   std::vector<LampOff> off;
   for (const std::string& setting : overrides) apply_override(tree, setting, overrides_at, off);
@@ -122,7 +124,6 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   check_format(root);
   Scene scene;
   scene.path = path;
-  scene.files.push_back(path);
   scene.name = root.text("name").value_or(path.stem().string());
   const double unit_m = read_unit(root);
 
@@ -175,6 +176,20 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   find_coincident_faces(scene, parts);
   name_small_objects(scene);
   return scene;
+}
+
+}  // namespace
+
+Scene read_scene(const std::filesystem::path& path, std::span<const std::string> overrides,
+                 const std::optional<base::Location>& overrides_at) {
+  Scene scene = scene_of(read_toml(path), path, overrides, overrides_at);
+  scene.files.insert(scene.files.begin(), path);
+  return scene;
+}
+
+Scene read_scene_text(std::string_view text, const std::filesystem::path& path,
+                      std::span<const std::string> overrides) {
+  return scene_of(parse_toml(text, path.string()), path, overrides, std::nullopt);
 }
 
 }  // namespace earthshine::scenes

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "scenes/scene.h"
 
@@ -21,6 +22,11 @@ namespace earthshine::scenes {
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path,
                                std::span<const std::string> overrides = {},
                                const std::optional<base::Location>& overrides_at = {});
+
+// The same of a text that stands in no file: `path` names it in messages, and the meshes are looked
+// for in its folder.
+[[nodiscard]] Scene read_scene_text(std::string_view text, const std::filesystem::path& path,
+                                    std::span<const std::string> overrides = {});
 
 // A Scene with nothing but the [[cctv]] tables and the [monitor] of the file, which holds nothing
 // else or is a whole scene (it has "format"), whose other tables are neither read nor checked.

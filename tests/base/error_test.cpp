@@ -26,6 +26,17 @@ TEST(Error, MessageSaysWhereWhatAllowedAndRemedy) {
                "a: \"v\\x00\" is no row");
 }
 
+TEST(Error, PartsAreThoseItWasMadeOf) {
+  const Error error(Blame::Input, Location{"scene.toml", 14, 3}, "found", "allowed", "remedy");
+  EXPECT_EQ(error.parts().where.file, "scene.toml");
+  EXPECT_EQ(error.parts().where.line, 14);
+  EXPECT_EQ(error.parts().where.column, 3);
+  EXPECT_EQ(error.parts().found, "found");
+  EXPECT_EQ(error.parts().allowed, "allowed");
+  EXPECT_EQ(error.parts().remedy, "remedy");
+  EXPECT_EQ(Error(Blame::Work, "--part", "found").parts().where.file, "--part");
+}
+
 TEST(Error, EditDistanceIsAMetricOnSmallWords) {
   EXPECT_EQ(edit_distance("", ""), 0U);
   EXPECT_EQ(edit_distance("gain", ""), 4U);
