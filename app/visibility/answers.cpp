@@ -38,12 +38,18 @@ bool has_lamps(const studies::LightBasis& basis, std::size_t setting) {
   return on.weight != off.weight;
 }
 
-std::string at(double position_deg) { return fmt::format("orbit {:g} deg", position_deg); }
+std::string at(const ViewingConfiguration& way, double position_deg) {
+  std::vector<scenes::Instant> moments;
+  for (const double tai_s : way.tai_s) moments.push_back({tai_s});
+  return place_text(way.positions_deg, moments, position_deg);
+}
 
-std::string arcs_text(const std::vector<studies::Arc>& arcs) {
+std::string arcs_text(const ViewingConfiguration& way, const std::vector<studies::Arc>& arcs) {
   std::string text;
   for (const auto& [from, to] : arcs) {
-    text += fmt::format("{}{:.0f} to {:.0f} deg", text.empty() ? "" : ", ", from, to);
+    if (!text.empty()) text += ", ";
+    text += way.tai_s.empty() ? fmt::format("{:.0f} to {:.0f} deg", from, to)
+                              : at(way, from) + " to " + at(way, to);
   }
   return text;
 }
@@ -83,9 +89,9 @@ std::string lamp_text(const std::vector<ViewingConfiguration>& ways, double want
   }
   if (tried == nullptr) return "";
   const ViewingConfiguration& told = best != nullptr ? *best : *tried;
-  const std::string where = told.darkest_deg
-                                ? fmt::format("Where it is darkest, at {}, ", at(*told.darkest_deg))
-                                : "Here ";
+  const std::string where =
+      told.darkest_deg ? fmt::format("Where it is darkest, at {}, ", at(told, *told.darkest_deg))
+                       : "Here ";
   if (best == nullptr) {
     return fmt::format(" {}no lamps up to {:g} times theirs bring it to {:g}.", where,
                        studies::most_lamp_factor, wanted);
@@ -149,8 +155,10 @@ void add_configurations(const StudyPart& part, const studies::StudyFile& study,
                                  part.positions_deg,
                                  {},
                                  {},
+                                 {},
                                  tries};
         for (const std::vector<double>& at_place : detect) way.detect.push_back(at_place[target]);
+        for (const scenes::Instant& moment : part.moments) way.tai_s.push_back(moment.tai_s);
         if (!part.positions_deg.empty()) way.darkest_deg = part.positions_deg[darkest];
         if (tries) {
           way.least_factor = studies::least_factor(
@@ -204,7 +212,7 @@ AnswerEntry answer_of(const studies::WantedTarget& wanted, const studies::StudyF
   } else {
     text = fmt::format(
         "{} is detected with {:g} or more best by {}: {}{}.", wanted.target, wanted.probability,
-        way_text(way), arcs_text(best.arcs),
+        way_text(way), arcs_text(way, best.arcs),
         study.timeline ? fmt::format(" ({:.0f} % of the orbit)", 100.0 * best.reach) : "");
   }
   answer.text = text + lamp_text(ways, wanted.probability);
