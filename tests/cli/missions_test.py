@@ -72,7 +72,9 @@ class Missions(program.Case):
 
     def test_what_cannot_be_is_refused(self):
         self.says(self.refused("study", "orbit", "bay.toml", "--positions", "4", "-o", "no"), "trajectory", "[time]")
-        self.says(self.refused("inspect", "bay.toml", "--set", "time.start=2026-03-02T12:00:00"), "circle.oem", "no state at 2026-03-02T12:00:00Z", "2026-03-01T12:00:00Z to 2026-03-01T15:00:00Z")
+        self.says(self.refused("inspect", "bay.toml", "--set", "time.start=2026-03-02T12:00:00", "--set",
+                               "time.stop=2026-03-02T13:00:00"),
+                  "circle.oem", "no state at 2026-03-02T12:00:00Z", "2026-03-01T12:00:00Z to 2026-03-01T15:00:00Z")
         text = (self.folder / "circle.oem").read_text(encoding="utf-8")
         self.write("circle.oem", text[:-60])
         self.says(self.refused("inspect", "bay.toml"), "circle.oem:", "numbers behind its date")
