@@ -211,16 +211,24 @@ struct AttitudeTable {
   std::vector<glm::dquat> turns;  // unit, one for each
 };
 
+struct Mission;  // scenes/time/mission.h: trajectory and attitude against time
+
+// What files say of an orbit: attitudes along the circle, or a mission in place of the circle.
+struct OrbitFiles {
+  std::optional<AttitudeTable> attitudes;
+  std::shared_ptr<const Mission> mission;
+};
+
 // A circular orbit about the Earth and which way the spacecraft points along it; orbit.h has the
-// frames.
+// frames. Of a mission: the circle through the spacecraft at the scene's moment.
 struct Orbit {
   double altitude_m = 0.0;
   double beta_deg = 0.0;                  // height of the Sun over the orbit's plane
   double position_deg = 0.0;              // where the scene's Sun and Earth are taken; 0 orbit noon
-  std::string attitude = "bay-to-earth";  // empty: by the table
+  std::string attitude = "bay-to-earth";  // empty: by the files
   std::string inertial_as = "bay-to-earth";  // } of attitude "inertial": the pose that is kept
   double inertial_at_deg = 0.0;              // } and where the spacecraft takes it
-  std::shared_ptr<const AttitudeTable> table;
+  std::shared_ptr<const OrbitFiles> files;  // null: none
   double inclination_deg = 0.0;
   double noon_argument_deg = 0.0;  // argument of latitude at orbit noon
 };

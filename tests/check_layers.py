@@ -17,7 +17,7 @@ import sys
 # folder.
 ROOMS = {
     "base": [".", "numbers", "ranks", "input", "files", "pixels"],
-    "scenes": ["texture", ".", "text", "reflect", "light", "mesh/gltf", "mesh", "sky", "effects", "health", "round", "plausible", "read"],
+    "scenes": ["texture", ".", "text", "reflect", "light", "mesh/gltf", "mesh", "sky", "time", "effects", "health", "round", "plausible", "read"],
     "radiosity": ["patches", "bodies", "factors", "objects", "direct", ".", "store", "exact/polygon",
                   "exact/occlusion", "exact"],
     "raytrace": ["camera", "frame", "light", "incoming", "paths", "share", "gather", "shade", "witness", "passes",
@@ -39,6 +39,7 @@ OWNERS = {
     "Embree": (r"embree[34]?/", ["scenes/ray_query.cpp", "scenes/ray_structure.*"]),
     "Eigen": (r"Eigen/", ["radiosity/*", "degrade/*", "studies/*"]),
     "OpenEXR": (r"(OpenEXR/|Imath/|Imf|Imath|Iex|half\.h)", ["base/files/exr_*"]),
+    "ERFA": (r"erfam?\.h", ["scenes/time/astronomy.cpp"]),
     "oneTBB": (r"(tbb|oneapi)/", ["base/parallel.cpp"]),
     "Open MPI": (r"mpi\.h", ["base/ranks/open_mpi.cpp"]),
     "toml++": (r"toml(\+\+|plusplus)", ["scenes/text/toml_file.cpp"]),

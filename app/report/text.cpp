@@ -144,6 +144,7 @@ std::string shares_text(const std::vector<GroupShare>& shares, Form form) {
 }
 
 std::string place_of(const ConditionEntry& condition) {
+  if (!condition.utc.empty()) return condition.utc;
   if (!condition.position_deg) return condition.name.empty() ? condition.id : condition.name;
   return fmt::format("{:.6g}°", *condition.position_deg);
 }

@@ -17,11 +17,14 @@ namespace {
 constexpr double likely = 0.5;
 
 bool has_positions(const Timeline& line) {
-  return std::all_of(line.position_deg.begin(), line.position_deg.end(),
+  return std::all_of(line.utc.begin(), line.utc.end(),
+                     [](const std::string& utc) { return utc.empty(); }) &&
+         std::all_of(line.position_deg.begin(), line.position_deg.end(),
                      [](const Number& x) { return x.has_value(); });
 }
 
 std::string place(const Timeline& line, std::size_t k) {
+  if (!line.utc[k].empty()) return line.utc[k];
   if (line.position_deg[k]) return fmt::format("{:.6g}°", *line.position_deg[k]);
   if (line.time_s[k]) return fmt::format("{:.6g} s", *line.time_s[k]);
   return fmt::format("place {}", k + 1);

@@ -289,6 +289,7 @@ std::vector<Timeline> timelines_of(const StudyResults& study) {
       const auto value = [&](Figure of) {
         return found == results.end() ? Number() : of(*found->second);
       };
+      line->utc.push_back(condition.utc);
       line->position_deg.push_back(condition.position_deg);
       line->time_s.push_back(condition.time_s);
       line->sun_share.push_back(condition.sun_share);
@@ -310,6 +311,7 @@ std::string results_csv(const StudyResults& study) {
   for (const ResultEntry& result : study.results) {
     const ConditionEntry& condition = study.conditions[result.condition];
     Json row = {{"scene", study.scenes[condition.scene].id},
+                {"utc", condition.utc.empty() ? Json() : Json(condition.utc)},
                 {"position_deg", to_json(condition.position_deg)},
                 {"time_s", to_json(condition.time_s)},
                 {"phase", condition.phase.empty() ? Json() : Json(condition.phase)},

@@ -60,6 +60,7 @@ struct ConditionEntry {
   std::string id;
   std::size_t scene = 0;
   std::string name, lamps;
+  std::string utc;  // "" without a trajectory
   Number position_deg, time_s, sun_share;
   std::string phase;  // "day", "penumbra" or "eclipse"; "" where the scene has no Sun
   std::vector<Factor> factors;
@@ -92,6 +93,7 @@ struct ResultEntry : TargetFindings {
 struct Timeline {
   std::size_t scene = 0;
   std::string camera, target, lamps;
+  std::vector<std::string> utc = {};  // of a trajectory, else ""
   std::vector<Number> position_deg = {}, time_s = {}, sun_share = {};
   std::vector<Number> detect = {}, recognise = {}, identify = {}, luminance = {}, weber = {};
   std::vector<std::optional<studies::Verdict>> verdict = {};

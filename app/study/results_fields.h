@@ -175,6 +175,7 @@ void describe(Fields& fields, Either<ConditionEntry> auto& condition) {
   fields.at(Named::Scene, "scene", condition.scene);
   fields("name", condition.name);
   fields("lamps", condition.lamps);
+  fields.if_any("utc", condition.utc);
   fields("position_deg", condition.position_deg);
   fields("time_s", condition.time_s);
   fields("sun_share", condition.sun_share);

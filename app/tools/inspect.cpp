@@ -211,6 +211,7 @@ Json report_of(const LoadedScene& loaded) {
   report["areas"] = areas_of(scene);
   report.update(sky_of(scene, loaded));
   report["orbit"] = orbit_facts(scene);
+  report["mission"] = mission_facts(scene);
   if (const std::size_t bytes = scenes::texture_bytes(scene); bytes > 0) {
     report["texture_mib"] = static_cast<double>(bytes) / 1048576.0;
   }

@@ -8,6 +8,7 @@
 
 #include "base/units.h"
 #include "scenes/sky/orbit.h"
+#include "scenes/time/mission.h"
 
 namespace earthshine::app {
 namespace {
@@ -132,6 +133,7 @@ std::string lights_table(const Json& report) {
                             : " (gives no light: " + body["why"].get<std::string>() + ")");
   }
   if (!report["orbit"].is_null()) text += orbit_line(report["orbit"]);
+  if (!report["mission"].is_null()) text += mission_lines(report["mission"]);
   for (const Json& camera : report["cameras"]) {
     text += fmt::format("camera {}: at {}, looks at {}, {:g} deg, {} x {}\n", camera["name"],
                         numbers(camera["position_m"]), numbers(camera["look_at_m"]),
@@ -169,8 +171,10 @@ std::string inspect_text(const Json& report) {
 }
 
 Json orbit_facts(const scenes::Scene& scene) {
-  if (!scene.orbit) return {};
+  if (!scene.orbit || scenes::mission_of(scene) != nullptr) return {};
   const scenes::Orbit& orbit = *scene.orbit;
+  const scenes::AttitudeTable* const table =
+      orbit.files && orbit.files->attitudes ? &*orbit.files->attitudes : nullptr;
   const scenes::OrbitState state = scenes::orbit_state(orbit, orbit.position_deg);
   const scenes::Eclipse eclipse = scenes::find_eclipse(orbit, scene.sun->angular_radius_deg);
   return {{"altitude_m", orbit.altitude_m},
@@ -179,8 +183,8 @@ Json orbit_facts(const scenes::Scene& scene) {
           {"position_deg", state.position_deg},
           {"time_s", state.time_s},
           {"latitude_deg", state.latitude_deg},
-          {"attitude", orbit.table ? Json() : Json(orbit.attitude)},
-          {"attitude_table", orbit.table ? Json(orbit.table->file) : Json()},
+          {"attitude", table == nullptr ? Json(orbit.attitude) : Json()},
+          {"attitude_table", table == nullptr ? Json() : Json(table->file)},
           {"penumbra", span_of(eclipse.penumbra)},
           {"umbra", span_of(eclipse.umbra)}};
 }

@@ -15,12 +15,16 @@ namespace earthshine::app {
 
 // What follows from a scene's [orbit], for reports.
 
-// null without [orbit]; else altitude_m, period_s, beta_deg, position_deg, time_s (since orbit
+// null without [orbit], and of one with a trajectory; else altitude_m, period_s, beta_deg, position_deg, time_s (since orbit
 // noon), latitude_deg, attitude and attitude_table (one of them null), penumbra and umbra (each
 // null, or begin_deg, end_deg, begin_s, end_s).
 [[nodiscard]] Json orbit_facts(const scenes::Scene& scene);
 
 // One line of them.
 [[nodiscard]] std::string orbit_line(const Json& facts);
+
+// What follows from its trajectory and [time]; null without. Moments are UTC.
+[[nodiscard]] Json mission_facts(const scenes::Scene& scene);
+[[nodiscard]] std::string mission_lines(const Json& facts);
 
 }  // namespace earthshine::app

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/call/render_call.h"
 #include "app/console.h"
@@ -108,22 +109,67 @@ void find_cameras(const studies::StudyFile& study, const std::vector<const scene
   }
 }
 
+// Why a study cannot go the way that it asks for.
+[[noreturn]] void refuse_way(const studies::StudyFile& study, const StudyPart& part,
+                             const char* key, const std::string& found, const char* allowed,
+                             const char* remedy) {
+  const bool in_file = study.where.contains(key);
+  throw Error(Blame::Input, in_file ? study.place(key) : base::Location{part.path},
+              (in_file ? part.path + " " : "") + found, allowed, remedy);
+}
+
+// Sun and Earth at each moment.
+std::vector<studies::SkyPlace> find_moments(const studies::StudyFile& study,
+                                            const scenes::Mission& mission, scenes::Scene& sky,
+                                            StudyPart& part) {
+  if (!study.time && !mission.has_span) {
+    refuse_way(study, part, "orbit", "has a trajectory and no [time] to go along", "",
+               "Write [time] with start, stop and step");
+  }
+  const scenes::TimeSpan span = study.time.value_or(mission.time);
+  std::vector<studies::SkyPlace> places;
+  for (std::size_t k = 0; k < span.count(); ++k) {
+    scenes::move_to_moment(sky, span.at(k));
+    places.push_back(studies::sky_of(sky));
+    double position = sky.orbit->position_deg;
+    if (k > 0) {
+      // Whole turns are those that the time is long enough for.
+      const double expected =
+          part.positions_deg.back() + 360.0 * span.step_s / scenes::period_at(mission, span.at(k));
+      position = expected + std::remainder(position - expected, 360.0);
+    }
+    part.positions_deg.push_back(position);
+    part.times_s.push_back(span.at(k) - span.start);
+    part.moments.push_back(span.at(k));
+  }
+  return places;
+}
+
 // Sun and Earth at each position, and when.
 std::vector<studies::SkyPlace> find_places(const studies::StudyFile& study, StudyPart& part) {
   const scenes::Scene& scene = part.loaded.scene;
-  if (study.positions_deg.empty()) return {studies::sky_of(scene)};
-  if (!scene.orbit) {
-    const bool in_file = study.where.contains("orbit");
-    throw Error(
-        Blame::Input, in_file ? study.place("orbit") : base::Location{part.path},
-        (in_file ? part.path + " " : "") + "has no [orbit], so that there is nothing to go along",
-        "a study with positions needs a scene with [orbit]",
-        "Add [orbit] with altitude_km, or leave the positions out");
-  }
+  if (study.positions_deg.empty() && !study.time) return {studies::sky_of(scene)};
   scenes::Scene sky;  // without surfaces: cheap to move
   sky.sun = scene.sun;
   sky.earth = scene.earth;
   sky.orbit = scene.orbit;
+  const scenes::Mission* const mission = scenes::mission_of(scene);
+  if (mission != nullptr && (study.time || study.usual_positions)) {
+    return find_moments(study, *mission, sky, part);
+  }
+  if (mission != nullptr) {
+    refuse_way(study, part, "orbit", "has a trajectory, along which positions in degrees are none",
+               "a study of it goes along [time]", "Write [time] with start, stop and step");
+  }
+  if (study.time) {
+    refuse_way(study, part, "time", "has no trajectory, so that there is no time to go along", "",
+               "Write [orbit] with trajectory = \"FILE.oem\" in the scene");
+  }
+  if (!scene.orbit) {
+    refuse_way(study, part, "orbit", "has no [orbit], so that there is nothing to go along",
+               "a study with positions needs a scene with [orbit]",
+               "Add [orbit] with altitude_km, or leave the positions out");
+  }
   std::vector<studies::SkyPlace> places;
   for (const double position : study.positions_deg) {
     scenes::move_along_orbit(sky, position);
@@ -156,6 +202,19 @@ void name_darkness(StudyPart& part, bool quiet) {
 
 }  // namespace
 
+std::string place_text(const std::vector<double>& positions_deg,
+                       const std::vector<scenes::Instant>& moments, double position_deg) {
+  if (moments.empty()) return fmt::format("orbit {:g} deg", position_deg);
+  const auto after = std::lower_bound(positions_deg.begin(), positions_deg.end(), position_deg);
+  const auto k = static_cast<std::size_t>(after - positions_deg.begin());
+  if (k == positions_deg.size()) return scenes::utc_text(moments.back());
+  if (k == 0 || positions_deg[k] == position_deg) return scenes::utc_text(moments[k]);
+  const double share =
+      (position_deg - positions_deg[k - 1]) / (positions_deg[k] - positions_deg[k - 1]);
+  return scenes::utc_text(
+      {std::round(moments[k - 1].tai_s + share * (moments[k] - moments[k - 1]))});
+}
+
 std::unique_ptr<StudyPart> prepare_part(const studies::StudyFile& study, std::size_t index,
                                         const Common& common) {
   auto part = std::make_unique<StudyPart>();
@@ -176,7 +235,7 @@ std::unique_ptr<StudyPart> prepare_part(const studies::StudyFile& study, std::si
   check_wanted(study, *part);
   scenes::SceneUse use;
   use.cameras = chosen_cameras(study, scene);
-  use.moves_along_orbit = !study.positions_deg.empty();
+  use.moves_along_orbit = !study.positions_deg.empty() || study.time;
   part->query =
       std::make_unique<const scenes::RayQuery>(ray_query(part->loaded, use, common.quiet));
   find_cameras(study, use.cameras, common, *part);

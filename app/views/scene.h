@@ -15,6 +15,12 @@
 
 namespace earthshine::app {
 
+// "orbit 30 deg", or of a study along time the UTC at which the spacecraft is there: moments are
+// those of positions_deg, which rise, or empty.
+[[nodiscard]] std::string place_text(const std::vector<double>& positions_deg,
+                                     const std::vector<scenes::Instant>& moments,
+                                     double position_deg);
+
 struct StudyCamera {
   const scenes::Camera* camera = nullptr;
   int columns = 0, rows = 0;
@@ -27,13 +33,19 @@ struct StudyPart {
   std::string path;  // as the study has it
   LoadedScene loaded;
   std::vector<double> positions_deg;  // empty: the scene's own place
-  std::vector<double> times_s;        // since orbit noon, of each position
+  // Of each position, since orbit noon; along time since the first moment.
+  std::vector<double> times_s;
+  std::vector<scenes::Instant> moments;  // along time; else empty. positions_deg then go on growing
   std::unique_ptr<const studies::LightBasis> basis;
   LoadedScene basis_scene;  // of the basis, with its groups and effects
   std::unique_ptr<const scenes::RayQuery> query;
   std::vector<StudyCamera> cameras;
   std::vector<std::string> targets;
 
+  // "orbit 30 deg", or along time "2026-03-01T12:00:00Z".
+  [[nodiscard]] std::string place_text(std::size_t place) const {
+    return earthshine::app::place_text(positions_deg, moments, positions_deg[place]);
+  }
   [[nodiscard]] std::size_t conditions() const {
     return basis->places().size() * basis->settings().size();
   }

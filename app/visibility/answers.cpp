@@ -40,7 +40,20 @@ bool has_lamps(const studies::LightBasis& basis, std::size_t setting) {
   return on.weight != off.weight;
 }
 
-std::string at(double position_deg) { return fmt::format("orbit {:g} deg", position_deg); }
+std::string at(const ViewingConfiguration& way, double position_deg) {
+  std::vector<scenes::Instant> moments;
+  for (const double tai_s : way.tai_s) moments.push_back({tai_s});
+  return place_text(way.positions_deg, moments, position_deg);
+}
+
+std::string arcs_text(const ViewingConfiguration& way, const std::vector<studies::Arc>& arcs) {
+  if (way.tai_s.empty()) return arcs_text(arcs);
+  std::string text;
+  for (const auto& [from, to] : arcs) {
+    text += fmt::format("{}{} to {}", text.empty() ? "" : ", ", at(way, from), at(way, to));
+  }
+  return text;
+}
 
 std::string way_text(const ViewingConfiguration& way) {
   return fmt::format("camera {}{}, lamps {}{}", way.camera,
@@ -69,7 +82,7 @@ Rated rate(const ViewingConfiguration& way, double wanted, bool closed) {
 // What the lamps of one way must give where Sun and Earth give least.
 std::string lamps_of(const ViewingConfiguration& way, double wanted) {
   const std::string where =
-      way.darkest_deg ? fmt::format("at {}, where it is darkest, ", at(*way.darkest_deg)) : "";
+      way.darkest_deg ? fmt::format("at {}, where it is darkest, ", at(way, *way.darkest_deg)) : "";
   const std::string by = fmt::format(" For {}, {}", way_text(way), where);
   if (!way.least_factor) {
     return fmt::format("{}no lamps up to {:g} times as bright bring it to {:g}.", by,
@@ -150,8 +163,10 @@ void add_configurations(const StudyPart& part, const studies::StudyFile& study,
                                  part.positions_deg,
                                  {},
                                  {},
+                                 {},
                                  tries};
         for (const std::vector<double>& at_place : detect) way.detect.push_back(at_place[target]);
+        for (const scenes::Instant& moment : part.moments) way.tai_s.push_back(moment.tai_s);
         if (!part.positions_deg.empty()) way.darkest_deg = part.positions_deg[darkest];
         if (tries) {
           way.least_factor = studies::least_factor(
@@ -209,7 +224,7 @@ AnswerEntry answer_of(const studies::WantedTarget& wanted, const studies::StudyF
   } else {
     text = fmt::format(
         "{} is detected with {:g} or more best by {}: {}{}.", wanted.target, wanted.probability,
-        way_text(way), arcs_text(best.arcs),
+        way_text(way), arcs_text(way, best.arcs),
         study.timeline ? fmt::format(" ({:.0f} % of the orbit)", 100.0 * best.reach) : "");
   }
   answer.text = text + lamp_text(ways, way, wanted.probability);

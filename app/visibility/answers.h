@@ -18,6 +18,7 @@ struct ViewingConfiguration {
   std::string camera, iris, lamps;
   std::vector<double> detect;         // by place
   std::vector<double> positions_deg;  // of them; empty: a single place
+  std::vector<double> tai_s;          // of them (scenes::Instant), along time; else empty
   // At the place with least light of Sun and Earth: the least factor on the setting's lamps.
   std::optional<double> least_factor, darkest_deg;
   bool tried_factors = false;  // false: the setting has no lamps on
@@ -31,6 +32,7 @@ void describe(Fields& fields, Either<ViewingConfiguration> auto& way) {
   fields("lamps", way.lamps);
   fields("detect", way.detect);
   fields("positions_deg", way.positions_deg);
+  fields("tai_s", way.tai_s);
   fields("least_factor", way.least_factor);
   fields("darkest_deg", way.darkest_deg);
   fields("tried_factors", way.tried_factors);

@@ -24,8 +24,8 @@ struct VisibilityCall {
 };
 
 struct OrbitCall : VisibilityCall {
-  std::uint64_t positions = 36;
-  std::string at;  // positions in degrees, in any order, with commas between
+  std::uint64_t positions = 0;  // 0: nobody asked
+  std::string at;               // positions in degrees, in any order, with commas between
 };
 
 struct FileCall {
@@ -104,9 +104,11 @@ void run_visibility(const VisibilityCall& call, const Common& common) {
 
 void run_orbit(const OrbitCall& call, const Common& common) {
   studies::StudyFile study = study_of(call.study, call.wanted, call.iris);
-  study.positions_deg = call.at.empty() ? studies::even_positions(static_cast<int>(call.positions))
-                                        : positions_of(call.at);
-  study.timeline = call.at.empty() && call.positions > 1;
+  constexpr int usual_positions = 36;
+  study.usual_positions = call.at.empty() && call.positions == 0;
+  const int count = study.usual_positions ? usual_positions : static_cast<int>(call.positions);
+  study.positions_deg = call.at.empty() ? studies::even_positions(count) : positions_of(call.at);
+  study.timeline = call.at.empty() && count > 1;
   run_and_print(task_of(std::move(study), call, "study orbit"), common, call.study.json,
                 call.dry_run);
 }
@@ -133,8 +135,10 @@ Command add_study_orbit(CLI::App& study) {
       "orbit", "How well each camera sees each target along the scene's orbit, from one solution");
   const auto call = std::make_shared<OrbitCall>();
   add_options(*parser, *call);
-  add_whole_number(*parser, "--positions", call->positions, 1, studies::most_positions,
-                   "Positions, evenly over one turn from orbit noon");
+  add_whole_number(
+      *parser, "--positions", call->positions, 1, studies::most_positions,
+      "Positions, evenly over one turn from orbit noon (default: 36, or the moments of "
+      "the scene's [time])");
   parser->add_option("--at", call->at, "Positions in degrees instead, with commas between")
       ->type_name("LIST")
       ->excludes("--positions");

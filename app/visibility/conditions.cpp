@@ -77,10 +77,10 @@ std::vector<ConditionEntry> conditions_of(const StudyPart& part, std::size_t sce
     const double share = studies::sun_share_of(sky);
     std::vector<Factor> factors;
     for (const auto& [name, factor] : lamps.factors) factors.push_back({name, factor});
-    const std::string where =
-        along ? fmt::format("orbit {:g} deg, ", part.positions_deg[place]) : "";
+    const std::string utc = part.moments.empty() ? "" : scenes::utc_text(part.moments[place]);
+    const std::string where = along ? part.place_text(place) + ", " : "";
     conditions.push_back({condition_id(part, k), scene, where + "lamps " + lamps.name, lamps.name,
-                          along ? Number(part.positions_deg[place]) : Number(),
+                          utc, along ? Number(part.positions_deg[place]) : Number(),
                           along ? Number(part.times_s[place]) : Number(),
                           sky.sun ? Number(share) : Number(), sky.sun ? phase_of(share) : "",
                           std::move(factors), lamps.others_off ? "off" : "as-they-are", Number()});

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -35,6 +36,12 @@ const StudyCamera* camera_of(const StudyPart& part, const std::string& name) {
 }
 
 std::size_t place_of(const StudyPart& part, const PictureWish& wish) {
+  if (wish.time) {
+    const auto moment =
+        std::find_if(part.moments.begin(), part.moments.end(),
+                     [&](const scenes::Instant& t) { return std::abs(t - *wish.time) < 1e-3; });
+    return static_cast<std::size_t>(moment - part.moments.begin());
+  }
   if (!wish.position_deg || part.positions_deg.empty()) return 0;
   const auto found =
       std::find(part.positions_deg.begin(), part.positions_deg.end(), *wish.position_deg);
@@ -127,6 +134,11 @@ void check_pictures(const studies::StudyFile& study, const std::vector<const Stu
       for (const studies::LampSetting& s : (*part)->basis->settings()) names.push_back(s.name);
       refuse(fmt::format("names lamps {}", scenes::in_quotes(wish.lamps)),
              "the study's lamp settings are " + scenes::listed(names));
+    }
+    if (wish.time && place_of(**part, wish) == (*part)->moments.size()) {
+      refuse(fmt::format("is at {}, which is not among the study's moments",
+                         scenes::utc_text(*wish.time)),
+             "they are start, start + step and so on, under [time]");
     }
     if (wish.position_deg && place_of(**part, wish) == (*part)->basis->places().size()) {
       refuse(fmt::format("is at {:g} deg, which is not among the study's positions",

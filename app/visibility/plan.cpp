@@ -175,14 +175,19 @@ void fill_pictures(studies::StudyFile& study, const StudyPart& part) {
                 positions.empty() ? std::nullopt : std::optional(positions.front()));
       continue;
     }
-    const std::string first = fmt::format("-{:g}-deg", positions.front());
-    const std::string last = fmt::format("-{:g}-deg", *midnight);
-    add_place(first, fmt::format("orbit {:g} deg", positions.front()), positions.front());
+    const auto at = [&](double position) { return place_text(positions, part.moments, position); };
+    const auto suffix = [&](double position) {
+      return "-" + (part.moments.empty() ? fmt::format("{:g}-deg", position) : at(position));
+    };
+    const std::string first = suffix(positions.front()), last = suffix(*midnight);
+    add_place(first, at(positions.front()), positions.front());
     if (*midnight == positions.front()) continue;
-    add_place(last, fmt::format("orbit {:g} deg", *midnight), midnight);
+    add_place(last, at(*midnight), midnight);
     const std::string kind = camera.cctv ? "-cctv" : "";
     study.pairs.push_back(
-        {fmt::format("Camera {}: orbit {:g} and {:g} deg", name, positions.front(), *midnight),
+        {part.moments.empty()
+             ? fmt::format("Camera {}: orbit {:g} and {:g} deg", name, positions.front(), *midnight)
+             : fmt::format("Camera {}: {} and {}", name, at(positions.front()), at(*midnight)),
          name + first + kind, name + last + kind});
   }
 }

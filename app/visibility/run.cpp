@@ -184,6 +184,10 @@ Parts prepare(StudyTask& task, const Common& common) {
   if (!common.quiet) note_unused(task);
   Parts parts = prepare_parts(task.study, common);
   check_models(task.study, pointers(parts));
+  if (!parts.front()->moments.empty()) {
+    task.study.timeline = false;  // no circle that closes
+    task.study.positions_deg = parts.front()->positions_deg;
+  }
   const std::string& scene = parts.front()->loaded.scene.name;
   if (task.study.path.empty() && !scene.empty()) task.study.name = scene;
   fill_pictures(task.study, *parts.front());

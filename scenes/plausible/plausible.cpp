@@ -13,6 +13,7 @@
 #include "scenes/sky/orbit.h"
 #include "scenes/sky/sky.h"
 #include "scenes/text/message_text.h"
+#include "scenes/time/mission.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -65,7 +66,9 @@ void name_hidden_sun(const Scene& scene, Texts& found) {
   });
   if (scene.orbit && hidden >= 1.0 && any_lamp) return;
   std::string advice = "turn one of the two where sunlight is meant, or leave out [sun]";
-  if (scene.orbit) {
+  if (mission_of(scene) != nullptr) {
+    advice = "take another moment under [time] where sunlight is meant";
+  } else if (scene.orbit) {
     advice = "take another position_deg where sunlight is meant";
     const Eclipse eclipse = find_eclipse(*scene.orbit, scene.sun->angular_radius_deg);
     if (eclipse.penumbra) {

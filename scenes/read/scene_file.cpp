@@ -7,6 +7,7 @@
 #include "scenes/health/coincident.h"
 #include "scenes/health/mend.h"
 #include "scenes/health/small_objects.h"
+#include "scenes/read/include.h"
 #include "scenes/read/override.h"
 #include "scenes/read/scene_parts.h"
 #include "scenes/surface_texture.h"
@@ -17,8 +18,8 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr std::string_view root_keys[] = {
-    "format", "name",  "unit",    "material", "object", "light",   "area",         "sun",
-    "earth",  "orbit", "ambient", "camera",   "cctv",   "monitor", "range_sensor", "quality"};
+    "format", "name", "unit",    "material", "object", "light",   "area",         "sun",    "earth",
+    "orbit",  "time", "ambient", "camera",   "cctv",   "monitor", "range_sensor", "quality"};
 constexpr std::string_view camera_file_keys[] = {"cctv", "monitor"};
 constexpr std::string_view ambient_keys[] = {"radiance"};
 constexpr std::string_view units[] = {"m", "cm", "mm", "ft", "in"};
@@ -99,12 +100,13 @@ void check_format(const TableReader& root) {
 }
 
 Scene read_camera_file(const std::filesystem::path& path) {
-  const TomlNode tree = read_toml(path);
+  TomlNode tree = read_toml(path);
   const bool whole_scene = find_entry(std::get<TomlTable>(tree.value), "format") != nullptr;
+  Scene scene;
+  if (whole_scene) add_includes(tree, path, scene.files);
   const TableReader root(tree, whole_scene ? "the scene" : "a camera file",
                          whole_scene ? KeyList(root_keys) : KeyList(camera_file_keys));
   if (whole_scene) check_format(root);
-  Scene scene;
   scene.path = path;
   scene.name = path.stem().string();
   read_cctv(scene, root);
@@ -117,13 +119,15 @@ Scene scene_of(TomlNode tree, const std::filesystem::path& path,
                std::span<const std::string> overrides,
                const std::optional<base::Location>& overrides_at) {
   refuse_study(tree);
+  Scene scene;
+  scene.path = path;
+  scene.files.push_back(path);
+  add_includes(tree, path, scene.files);
   std::vector<LampOff> off;
   for (const std::string& setting : overrides) apply_override(tree, setting, overrides_at, off);
 
   const TableReader root(tree, "the scene", root_keys);
   check_format(root);
-  Scene scene;
-  scene.path = path;
   scene.name = root.text("name").value_or(path.stem().string());
   const double unit_m = read_unit(root);
 
@@ -140,7 +144,8 @@ Scene scene_of(TomlNode tree, const std::filesystem::path& path,
   const auto tables = luminaires.files();
   scene.files.insert(scene.files.end(), tables.begin(), tables.end());
   for (std::string& warning : luminaires.warnings()) scene.warnings.push_back(std::move(warning));
-  read_sky(scene, plain_table(root, "sun"), plain_table(root, "earth"), plain_table(root, "orbit"));
+  read_sky(scene, {plain_table(root, "sun"), plain_table(root, "earth"), plain_table(root, "orbit"),
+                   plain_table(root, "time")});
   if (const TomlNode* node = plain_table(root, "ambient")) {
     const TableReader table(*node, "[ambient]", ambient_keys);
     scene.ambient_radiance = table.colour("radiance").value_or(Rgb(0.0));

@@ -57,8 +57,12 @@ inline constexpr Range altitudes_km{0.0, 1e6, true};
 // [orbit]; a table of attitudes is looked for beside scene.path, warnings go to the scene.
 [[nodiscard]] Orbit read_orbit(Scene& scene, const TomlNode& node);
 
-// [sun], [earth] and [orbit], each null when absent, to scene.sun, scene.earth and scene.orbit.
-void read_sky(Scene& scene, const TomlNode* sun, const TomlNode* earth, const TomlNode* orbit);
+// [sun], [earth], [orbit] and [time], each null when absent, to scene.sun, scene.earth and
+// scene.orbit.
+struct SkyTables {
+  const TomlNode *sun, *earth, *orbit, *time;
+};
+void read_sky(Scene& scene, const SkyTables& tables);
 
 [[nodiscard]] Camera read_camera(const TomlNode& node, double unit_m);
 [[nodiscard]] SettingTable read_settings(const TomlNode& node, const std::string& title,

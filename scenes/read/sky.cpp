@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "scenes/read/mission.h"
 #include "scenes/read/scene_parts.h"
 #include "scenes/sky/attitude_file.h"
 #include "scenes/sky/orbit.h"
@@ -30,9 +31,9 @@ void refuse_beside_orbit(const TableReader& table, std::string_view key) {
              "Remove the key, or [orbit]");
 }
 
-Sun read_sun(const TableReader& table, const std::optional<Orbit>& orbit) {
+Sun read_sun(const TableReader& table, bool by_orbit) {
   Sun sun;
-  if (orbit) {
+  if (by_orbit) {
     refuse_beside_orbit(table, "direction");
   } else {
     sun.direction = table.required(table.direction("direction"), "direction", example_direction);
@@ -43,11 +44,11 @@ Sun read_sun(const TableReader& table, const std::optional<Orbit>& orbit) {
   return sun;
 }
 
-void read_disc(Earth& earth, const TableReader& table, const std::optional<Orbit>& orbit) {
-  if (orbit) {
+void read_disc(Earth& earth, const TableReader& table, bool by_orbit) {
+  if (by_orbit) {
     refuse_beside_orbit(table, "altitude_km");
     refuse_beside_orbit(table, "half_angle_deg");
-    earth.altitude_m = orbit->altitude_m;
+    return;  // moving along the orbit sets it
   } else if (earth.model == EarthModel::Uniform && table.has("half_angle_deg")) {
     if (table.has("altitude_km")) {
       table.fail("half_angle_deg", "stands beside \"altitude_km\"",
@@ -68,7 +69,7 @@ void read_disc(Earth& earth, const TableReader& table, const std::optional<Orbit
 }
 
 // The share of the light that a Lambert Earth gives back.
-void read_albedo(Earth& earth, const TableReader& table, const std::optional<Orbit>& orbit) {
+void read_albedo(Earth& earth, const TableReader& table, bool by_orbit) {
   if (table.choice("albedo_by", albedo_laws).value_or("mean") == "mean") {
     for (const std::string_view key : latitude_keys) {
       if (!table.has(key)) continue;
@@ -82,7 +83,7 @@ void read_albedo(Earth& earth, const TableReader& table, const std::optional<Orb
   law.a0 = table.number("albedo_a0", share).value_or(law.a0);
   law.a1 = table.number("albedo_a1", {-1.0, 1.0}).value_or(law.a1);
   law.a2 = table.number("albedo_a2", {-1.0, 1.0}).value_or(law.a2);
-  if (orbit) {
+  if (by_orbit) {
     refuse_beside_orbit(table, "north");
   } else {
     law.north = table.required(table.direction("north"), "north",
@@ -92,16 +93,16 @@ void read_albedo(Earth& earth, const TableReader& table, const std::optional<Orb
   earth.albedo = table.colour("albedo", share).value_or(Rgb(1.0));
 }
 
-Earth read_earth(const TableReader& table, const std::optional<Orbit>& orbit) {
+Earth read_earth(const TableReader& table, bool by_orbit) {
   Earth earth;
   if (table.choice("model", models).value_or("lambert") == "uniform")
     earth.model = EarthModel::Uniform;
-  if (orbit) {
+  if (by_orbit) {
     refuse_beside_orbit(table, "direction");
   } else {
     earth.direction = table.required(table.direction("direction"), "direction", example_direction);
   }
-  read_disc(earth, table, orbit);
+  read_disc(earth, table, by_orbit);
   if (earth.model == EarthModel::Uniform) {
     for (const std::string_view key :
          {"albedo", "albedo_by", "albedo_a0", "albedo_a1", "albedo_a2", "north"}) {
@@ -115,7 +116,7 @@ Earth read_earth(const TableReader& table, const std::optional<Orbit>& orbit) {
       table.fail("radiance", "belongs to model \"uniform\"", "model \"lambert\" has albedo",
                  "Write model = \"uniform\", or remove the key");
     }
-    read_albedo(earth, table, orbit);
+    read_albedo(earth, table, by_orbit);
   }
   return earth;
 }
@@ -137,9 +138,10 @@ void read_attitude(Scene& scene, Orbit& orbit, const TableReader& table) {
                  "the attitude is given by one of the two");
     }
     orbit.attitude.clear();
-    orbit.table = std::make_shared<const AttitudeTable>(
-        read_attitudes(scene.files.emplace_back(scene.path.parent_path() / *file),
-                       table.where("attitude_table"), scene.warnings));
+    orbit.files = std::make_shared<const OrbitFiles>(
+        OrbitFiles{read_attitudes(scene.files.emplace_back(scene.path.parent_path() / *file),
+                                  table.where("attitude_table"), scene.warnings),
+                   nullptr});
   }
   if (attitude) orbit.attitude = *attitude;
   if (orbit.attitude != inertial_attitude) {
@@ -171,17 +173,31 @@ void check_declination(Scene& scene, const Orbit& orbit) {
 
 }  // namespace
 
-void read_sky(Scene& scene, const TomlNode* sun, const TomlNode* earth, const TomlNode* orbit) {
-  if (orbit != nullptr) scene.orbit = read_orbit(scene, *orbit);
+void read_sky(Scene& scene, const SkyTables& tables) {
+  auto [sun, earth, orbit, time] = tables;
+  const bool by_orbit = orbit != nullptr;
+  if (by_orbit && names_trajectory(*orbit)) {
+    scene.orbit = read_mission(scene, *orbit, time);
+  } else if (time != nullptr) {
+    throw base::Error(base::Blame::Input, time->where, "[time] stands without a trajectory",
+                      "positions on a circle have no date",
+                      "Write [orbit] with trajectory = \"FILE.oem\", or remove [time]");
+  } else if (by_orbit) {
+    scene.orbit = read_orbit(scene, *orbit);
+  }
   // With [orbit], Sun and Earth are there, and an absent table stands for its defaults.
-  const TomlNode nothing{orbit != nullptr ? orbit->where : base::Location{}, TomlTable{}};
-  if (orbit != nullptr && sun == nullptr) sun = &nothing;
-  if (orbit != nullptr && earth == nullptr) earth = &nothing;
-  if (sun != nullptr) scene.sun = read_sun(TableReader(*sun, "[sun]", sun_keys), scene.orbit);
+  const TomlNode nothing{by_orbit ? orbit->where : base::Location{}, TomlTable{}};
+  if (by_orbit && sun == nullptr) sun = &nothing;
+  if (by_orbit && earth == nullptr) earth = &nothing;
+  if (sun != nullptr) scene.sun = read_sun(TableReader(*sun, "[sun]", sun_keys), by_orbit);
   if (earth == nullptr) return;
   const TableReader table(*earth, "[earth]", earth_keys);
-  scene.earth = read_earth(table, scene.orbit);
-  if (scene.orbit) move_along_orbit(scene, scene.orbit->position_deg);
+  scene.earth = read_earth(table, by_orbit);
+  if (const Mission* mission = mission_of(scene)) {
+    move_to_moment(scene, mission->time.start);
+  } else if (scene.orbit) {
+    move_along_orbit(scene, scene.orbit->position_deg);
+  }
   if (scene.earth->model == EarthModel::Lambert && !scene.sun) {
     throw base::Error(
         base::Blame::Input, table.where("model"),

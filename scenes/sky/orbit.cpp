@@ -6,41 +6,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/sky/sky.h"
+
 namespace earthshine::scenes {
 namespace {
 
 // Components of vectors along (velocity, normal, zenith): a right-handed frame.
 const Vec3 velocity(1.0, 0.0, 0.0), normal(0.0, 1.0, 0.0), zenith(0.0, 0.0, 1.0);
 
-// The scene's axes in that frame: x aft, z out of the bay, y = z x x.
-struct BodyAxes {
-  Vec3 aft, out_of_bay;
-
-  [[nodiscard]] Vec3 in_scene(const Vec3& d) const {
-    const Vec3 starboard = glm::cross(out_of_bay, aft);
-    return glm::normalize(Vec3(glm::dot(d, aft), glm::dot(d, starboard), glm::dot(d, out_of_bay)));
-  }
-};
-
 Vec3 sun_at(double beta_deg, double position_deg) {
   const double beta = base::radians(beta_deg);
   const double position = base::radians(position_deg);
   return {-std::cos(beta) * std::sin(position), std::sin(beta),
           std::cos(beta) * std::cos(position)};
-}
-
-BodyAxes named_axes(std::string_view attitude, const Vec3& sun) {
-  if (attitude == "bay-to-earth") return {-velocity, -zenith};
-  if (attitude == "bay-to-space") return {-velocity, zenith};
-  if (attitude == "tail-down") return {-zenith, velocity};
-  if (attitude == "bay-to-sun") {
-    Vec3 north = normal - glm::dot(normal, sun) * sun;
-    if (glm::dot(north, north) < 1e-12) north = zenith;  // Sun at the orbit's pole
-    return {-glm::normalize(north), sun};
-  }
-  throw base::Error(base::Blame::Input, "orbit",
-                    "unknown attitude \"" + std::string(attitude) + "\"",
-                    "allowed: bay-to-earth, bay-to-space, bay-to-sun, tail-down");
 }
 
 // From the local-vertical frame at one position to that at another: the frame turns about the
@@ -80,9 +58,9 @@ BodyAxes turned_axes(const glm::dquat& turn) {
 }
 
 BodyAxes axes_at(const Orbit& orbit, double position_deg, double time_s) {
-  if (orbit.table) {
-    const double at = orbit.table->by_time ? time_s : position_deg;
-    return turned_axes(turn_at(*orbit.table, at, position_deg));
+  if (orbit.files && orbit.files->attitudes) {
+    const AttitudeTable& table = *orbit.files->attitudes;
+    return turned_axes(turn_at(table, table.by_time ? time_s : position_deg, position_deg));
   }
   if (orbit.attitude == inertial_attitude) {
     const double from = orbit.inertial_at_deg;
@@ -102,6 +80,25 @@ std::optional<double> half_arc_deg(double beta_deg, double limit_rad) {
 }
 
 }  // namespace
+
+Vec3 BodyAxes::in_scene(const Vec3& d) const {
+  const Vec3 starboard = glm::cross(out_of_bay, aft);
+  return glm::normalize(Vec3(glm::dot(d, aft), glm::dot(d, starboard), glm::dot(d, out_of_bay)));
+}
+
+BodyAxes named_axes(std::string_view attitude, const Vec3& sun) {
+  if (attitude == "bay-to-earth") return {-velocity, -zenith};
+  if (attitude == "bay-to-space") return {-velocity, zenith};
+  if (attitude == "tail-down") return {-zenith, velocity};
+  if (attitude == "bay-to-sun") {
+    Vec3 north = normal - glm::dot(normal, sun) * sun;
+    if (glm::dot(north, north) < 1e-12) north = zenith;  // Sun at the orbit's pole
+    return {-glm::normalize(north), sun};
+  }
+  throw base::Error(base::Blame::Input, "orbit",
+                    "unknown attitude \"" + std::string(attitude) + "\"",
+                    "allowed: bay-to-earth, bay-to-space, bay-to-sun, tail-down");
+}
 
 double orbit_period_s(double altitude_m) {
   const double a = base::earth_radius_m + altitude_m;
@@ -136,6 +133,8 @@ void move_along_orbit(Scene& scene, double position_deg) {
   if (scene.sun) scene.sun->direction = state.sun;
   if (!scene.earth) return;
   scene.earth->direction = state.earth;
+  scene.earth->altitude_m = scene.orbit->altitude_m;
+  scene.earth->half_angle_deg = base::degrees(earth_half_angle_rad(scene.orbit->altitude_m));
   if (scene.earth->by_latitude) scene.earth->by_latitude->north = state.north;
 }
 

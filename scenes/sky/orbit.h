@@ -31,6 +31,15 @@ inline constexpr std::string_view orbit_attitudes[] = {"bay-to-earth", "bay-to-s
 // The attitude that Orbit::inertial_as has at Orbit::inertial_at_deg, kept in inertial space.
 inline constexpr std::string_view inertial_attitude = "inertial";
 
+// The scene's axes x and z, by their components along (velocity, normal, zenith).
+struct BodyAxes {
+  Vec3 aft, out_of_bay;
+  // Along the scene's axes, unit.
+  [[nodiscard]] Vec3 in_scene(const Vec3& d) const;
+};
+// Of an attitude that has a name, with the Sun there. Throws base::Error (Input) for another.
+[[nodiscard]] BodyAxes named_axes(std::string_view attitude, const Vec3& sun);
+
 struct OrbitState {
   double position_deg = 0.0;  // as asked, not brought to one turn
   double time_s = 0.0;        // since orbit noon, negative before it

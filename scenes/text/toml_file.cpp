@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <sstream>
 #include <utility>
 
 #include "base/input/input_file.h"
@@ -16,6 +17,13 @@ namespace {
 
 base::Location place(const toml::source_region& source, const std::string& file) {
   return {file, static_cast<int>(source.begin.line), static_cast<int>(source.begin.column)};
+}
+
+template <class Date>
+std::string text_of(const Date& date) {
+  std::ostringstream text;
+  text << date;
+  return text.str();
 }
 
 TomlNode convert(const toml::node& node, const std::string& file) {
@@ -43,6 +51,12 @@ TomlNode convert(const toml::node& node, const std::string& file) {
     result.value = number->get();
   } else if (const auto* flag = node.as_boolean()) {
     result.value = flag->get();
+  } else if (const auto* date_time = node.as_date_time()) {
+    result.value = TomlDate{text_of(date_time->get())};
+  } else if (const auto* date = node.as_date()) {
+    result.value = TomlDate{text_of(date->get())};
+  } else if (const auto* time = node.as_time()) {
+    result.value = TomlDate{text_of(time->get())};
   }
   return result;
 }
@@ -173,7 +187,7 @@ std::string describe(const TomlNode& node) {
     std::string operator()(const std::string& text) const {
       return fmt::format("the string {}", in_quotes(text));
     }
-    std::string operator()(TomlDate) const { return "a date or time"; }
+    std::string operator()(const TomlDate&) const { return "a date or time"; }
     std::string operator()(const TomlArray& items) const {
       std::string text = fmt::format("an array of {}", items.size());
       const bool few = items.size() <= 4 && std::ranges::none_of(items, [](const TomlNode& item) {

@@ -17,7 +17,9 @@ namespace earthshine::scenes {
 
 struct TomlNode;
 struct TomlEntry;
-struct TomlDate {};  // dates and times: TOML has them, scenes do not
+struct TomlDate {
+  std::string text;  // ISO 8601
+};
 using TomlArray = std::vector<TomlNode>;
 using TomlTable = std::vector<TomlEntry>;  // in the order of the file
 

@@ -24,17 +24,23 @@ constexpr double between_directions = 1.01;
 
 bool same(const Vec3& a, const Vec3& b) { return glm::length(a - b) < same_direction; }
 
-bool same_disc(const std::vector<SkyPlace>& places) {
-  const scenes::Earth* first = nullptr;
+// The widest disc of the Earth, if it stands still and is nearly of one size: along a trajectory
+// the height changes by kilometres. Cells at the rim of a narrower one are dark beyond its limb.
+const scenes::Earth* same_disc(const std::vector<SkyPlace>& places) {
+  constexpr double nearly_one_size_deg = 1.0;
+  const scenes::Earth *widest = nullptr, *narrowest = nullptr;
   for (const SkyPlace& place : places) {
     if (!place.earth) continue;
-    if (first == nullptr) first = &*place.earth;
-    if (!same(first->direction, place.earth->direction) ||
-        std::abs(first->half_angle_deg - place.earth->half_angle_deg) > 1e-9) {
-      return false;
+    const scenes::Earth* const earth = &*place.earth;
+    if (widest != nullptr && !same(widest->direction, earth->direction)) return nullptr;
+    if (widest == nullptr || earth->half_angle_deg > widest->half_angle_deg) widest = earth;
+    if (narrowest == nullptr || earth->half_angle_deg < narrowest->half_angle_deg) {
+      narrowest = earth;
     }
   }
-  return true;
+  const bool alike = widest != nullptr &&
+                     widest->half_angle_deg - narrowest->half_angle_deg <= nearly_one_size_deg;
+  return alike ? widest : nullptr;
 }
 
 // A scene without surfaces: what the functions of the sky look at.
@@ -116,12 +122,9 @@ void LightBasis::split_sky(const BasisOptions& options) {
   if (earth_lit) {
     scenes::Earth earth;
     earth.model = scenes::EarthModel::Uniform;
-    if (same_disc(places_)) {
-      const auto first = std::find_if(places_.begin(), places_.end(), [](const SkyPlace& place) {
-        return place.earth.has_value();
-      });
-      earth.direction = first->earth->direction;
-      earth.half_angle_deg = first->earth->half_angle_deg;
+    if (const scenes::Earth* const disc = same_disc(places_)) {
+      earth.direction = disc->direction;
+      earth.half_angle_deg = disc->half_angle_deg;
       parts.cells = scenes::cells_of_disc(earth.direction, base::radians(earth.half_angle_deg),
                                           options.disc_cells);
     } else {

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "scenes/read/mission.h"
 #include "scenes/read/scene_parts.h"
 #include "scenes/text/toml_file.h"
 
@@ -22,14 +23,14 @@ using scenes::TomlNode;
 using scenes::TomlTable;
 
 constexpr std::string_view root_keys[] = {
-    "format", "name",    "scenes",        "scene", "set",        "cameras", "targets",
-    "size",   "wanted",  "iris",          "orbit", "lamps",      "picture", "pair",
-    "cctv",   "monitor", "camera_models", "seen",  "earth_cells"};
+    "format", "name",    "scenes",        "scene", "set",         "cameras", "targets",
+    "size",   "wanted",  "iris",          "orbit", "lamps",       "picture", "pair",
+    "cctv",   "monitor", "camera_models", "seen",  "earth_cells", "time"};
 constexpr std::string_view orbit_keys[] = {"positions", "positions_deg"};
 constexpr std::string_view lamps_keys[] = {"name", "set", "others"};
 constexpr std::string_view others_words[] = {"as-they-are", "off"};
 constexpr std::string_view iris_words[] = {"fixed", "peak", "normal", "average"};
-constexpr std::string_view picture_keys[] = {"name",  "title", "camera", "position_deg",
+constexpr std::string_view picture_keys[] = {"name",  "title", "camera", "position_deg", "time",
                                              "lamps", "shows", "lights", "cctv"};
 constexpr std::string_view shows_words[] = {"clean", "cctv", "distributed", "distributed-cctv"};
 constexpr std::string_view pair_keys[] = {"title", "left", "right"};
@@ -78,6 +79,12 @@ void read_size(StudyFile& study, const TableReader& root) {
 
 void read_positions(StudyFile& study, const TableReader& root) {
   const TomlEntry* entry = root.find("orbit");
+  if (const TomlEntry* time = root.find("time")) {
+    if (entry != nullptr) {
+      root.fail("time", "stands beside [orbit]", "a study goes along time or along positions");
+    }
+    study.time = scenes::read_time(time->node);
+  }
   if (entry == nullptr) return;
   const TableReader orbit(entry->node, "[orbit]", orbit_keys);
   const std::optional<int> count = orbit.whole("positions", 1, most_positions);
@@ -149,6 +156,10 @@ PictureWish read_picture(const TomlNode& node, std::vector<std::string>& warning
   wish.title = table.text("title").value_or(wish.name);
   wish.camera = table.required(table.text("camera"), "camera", "camera = \"B\"");
   wish.position_deg = table.number("position_deg", {-360.0, 360.0});
+  wish.time = scenes::read_moment(table, "time");
+  if (wish.time && wish.position_deg) {
+    table.fail("time", "stands beside \"position_deg\"", "a picture is at one of the two");
+  }
   wish.lamps = table.text("lamps").value_or("");
   const std::string shows = table.choice("shows", shows_words).value_or("clean");
   const auto* found = std::find(std::begin(shows_words), std::end(shows_words), shows);

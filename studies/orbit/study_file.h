@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "scenes/scene.h"
+#include "scenes/time/mission.h"
 #include "studies/light/light_basis.h"
 
 namespace earthshine::studies {
@@ -27,8 +28,9 @@ struct WantedTarget {
 enum class Shows { Clean, Cctv, Distributed, DistributedCctv };
 struct PictureWish {
   std::string name, title, camera;
-  std::optional<double> position_deg;  // none: the first position
-  std::string lamps;                   // a setting's name; empty: the first one
+  std::optional<double> position_deg;   // } neither: the first position
+  std::optional<scenes::Instant> time;  // } of a study along time
+  std::string lamps;                    // a setting's name; empty: the first one
   Shows shows = Shows::Clean;
   int lights = 64;   // of the distributed ones
   std::string cctv;  // another CCTV camera than the camera's own; empty: that
@@ -48,7 +50,9 @@ struct StudyFile {
   std::optional<int> columns, rows;           // none: the camera's own
   std::vector<double> positions_deg;  // along the orbit, rising; empty: the scene's own place
   bool timeline = false;              // the positions are evenly spaced over one turn
-  std::vector<LampSetting> lamps;     // never empty
+  bool usual_positions = false;  // nobody asked for them: a scene with a [time] goes along that
+  std::optional<scenes::TimeSpan> time;  // in place of positions, of scenes with a trajectory
+  std::vector<LampSetting> lamps;        // never empty
   std::map<std::string, std::string> camera_models;  // CCTV camera by camera
   scenes::Scene cctv;                                // its own [[cctv]] tables and [monitor]
   std::vector<std::string> iris;  // modes that answers choose among; empty: the camera's

@@ -138,7 +138,7 @@ def of_studies(program, out):
 def results(program, only):
     with tempfile.TemporaryDirectory() as temporary:
         out = pathlib.Path(temporary)
-        for scene in sorted((TOP / "scenes" / "library").rglob("*.toml")):
+        for scene in sorted((TOP / "scenes" / "library").glob("[!m]*/*.toml")):  # not materials
             if only is None or only in str(scene):
                 yield from of_scene(program, scene, out)
         if only is None or only == "studies":

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/read/include.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "base/input/input_file.h"
+#include "scenes/text/message_text.h"
+
+namespace earthshine::scenes {
+namespace {
+
+using base::Blame;
+using base::Error;
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_nested = 8;
+constexpr std::string_view of_scene_alone[] = {"format", "name", "unit"};
+constexpr std::string_view file_keys[] = {"mesh", "file", "attitude_table", "trajectory"};
+
+std::string text_in(const TomlTable& table, std::string_view key) {
+  const TomlEntry* entry = find_entry(table, key);
+  const auto* text = entry == nullptr ? nullptr : std::get_if<std::string>(&entry->node.value);
+  return text == nullptr ? std::string() : *text;
+}
+
+// Files that a table names, from beside the included file to beside the scene.
+void move_files(TomlNode& node, const fs::path& folder) {
+  if (auto* items = std::get_if<TomlArray>(&node.value)) {
+    for (TomlNode& item : *items) move_files(item, folder);
+  }
+  auto* table = std::get_if<TomlTable>(&node.value);
+  if (table == nullptr) return;
+  for (TomlEntry& entry : *table) {
+    auto* text = std::get_if<std::string>(&entry.node.value);
+    const bool names_file =
+        std::find(std::begin(file_keys), std::end(file_keys), entry.key) != std::end(file_keys) ||
+        (entry.key == "attitude" && text != nullptr && text->find('.') != std::string::npos);
+    if (text != nullptr && names_file) *text = (folder / *text).lexically_normal().string();
+    move_files(entry.node, folder);
+  }
+}
+
+// The entries of a list of tables before those that are there, but for names that are there too.
+void put_before(TomlArray& own, TomlArray included) {
+  std::erase_if(included, [&](const TomlNode& node) {
+    const auto* table = std::get_if<TomlTable>(&node.value);
+    const std::string name = table == nullptr ? std::string() : text_in(*table, "name");
+    return !name.empty() && std::any_of(own.begin(), own.end(), [&](const TomlNode& other) {
+      const auto* mine = std::get_if<TomlTable>(&other.value);
+      return mine != nullptr && text_in(*mine, "name") == name;
+    });
+  });
+  own.insert(own.begin(), std::make_move_iterator(included.begin()),
+             std::make_move_iterator(included.end()));
+}
+
+class Includer {
+ public:
+  Includer(const fs::path& scene, std::string unit, std::vector<fs::path>& files)
+      : folder_(scene.parent_path()), unit_(std::move(unit)), files_(files) {
+    open_.push_back(scene.lexically_normal());
+  }
+
+  // `file`: of the tree, relative to the program's folder.
+  void add(TomlNode& tree, const fs::path& file) {
+    auto& root = std::get<TomlTable>(tree.value);
+    const TomlEntry* entry = find_entry(root, "include");
+    if (entry == nullptr) return;
+    const TomlEntry asked = *entry;
+    std::erase_if(root, [](const TomlEntry& one) { return one.key == "include"; });
+    const auto* items = std::get_if<TomlArray>(&asked.node.value);
+    if (items == nullptr) refuse(asked.where, "\"include\" is " + describe(asked.node));
+    // The last one first: entries of each are put before those that are there.
+    for (auto item = items->rbegin(); item != items->rend(); ++item) {
+      const auto* name = std::get_if<std::string>(&item->value);
+      if (name == nullptr || name->empty()) {
+        refuse(item->where, "\"include\" holds " + describe(*item));
+      }
+      merge(root, read(file.parent_path() / *name, item->where));
+    }
+  }
+
+ private:
+  [[noreturn]] static void refuse(const base::Location& where, const std::string& found) {
+    throw Error(Blame::Input, where, found, "allowed is a list of files",
+                "Write for instance include = [\"../materials/spacecraft.toml\"]");
+  }
+
+  TomlTable read(const fs::path& named, const base::Location& asked_at) {
+    const fs::path path = named.lexically_normal();
+    if (std::find(open_.begin(), open_.end(), path) != open_.end() || open_.size() > most_nested) {
+      throw Error(Blame::Input, asked_at, fmt::format("{} includes itself", path.string()),
+                  fmt::format("files may include others, {} deep", most_nested));
+    }
+    base::check_input_file(path, asked_at);
+    files_.push_back(path);
+    TomlNode tree = read_toml(path);
+    check_unit(std::get<TomlTable>(tree.value), path);
+    const fs::path away = path.parent_path().lexically_relative(
+        folder_.empty() ? fs::path(".") : folder_.lexically_normal());
+    open_.push_back(path);
+    add(tree, path);
+    open_.pop_back();
+    // Files of nested ones are relative to the scene already; those are absent from own tables.
+    TomlTable table = std::get<TomlTable>(std::move(tree.value));
+    for (TomlEntry& entry : table) {
+      if (entry.where.file == path.string()) move_own(entry.node, path, away);
+    }
+    return table;
+  }
+
+  // Of lists some entries may come from a file that this one includes.
+  static void move_own(TomlNode& node, const fs::path& path, const fs::path& away) {
+    if (auto* items = std::get_if<TomlArray>(&node.value)) {
+      for (TomlNode& item : *items) {
+        if (item.where.file == path.string()) move_files(item, away);
+      }
+      return;
+    }
+    move_files(node, away);
+  }
+
+  void check_unit(const TomlTable& root, const fs::path& path) const {
+    const TomlEntry* unit = find_entry(root, "unit");
+    const bool has_lengths = std::any_of(root.begin(), root.end(), [](const TomlEntry& entry) {
+      return entry.key == "object" || entry.key == "light" || entry.key == "camera" ||
+             entry.key == "area";
+    });
+    if (unit == nullptr && !has_lengths) return;
+    const std::string own = unit == nullptr ? "m" : text_in(root, "unit");
+    if (own == unit_) return;
+    throw Error(
+        Blame::Input, unit == nullptr ? base::Location{path.string()} : unit->where,
+        fmt::format("its unit is {}, that of the scene {}", in_quotes(own), in_quotes(unit_)),
+        "a scene and what it includes have one unit");
+  }
+
+  static void merge(TomlTable& root, TomlTable included) {
+    for (TomlEntry& entry : included) {
+      if (std::find(std::begin(of_scene_alone), std::end(of_scene_alone), entry.key) !=
+          std::end(of_scene_alone)) {
+        continue;
+      }
+      TomlEntry* own = find_entry(root, entry.key);
+      if (own == nullptr) {
+        root.push_back(std::move(entry));
+        continue;
+      }
+      auto* mine = std::get_if<TomlArray>(&own->node.value);
+      auto* theirs = std::get_if<TomlArray>(&entry.node.value);
+      if (mine != nullptr && theirs != nullptr) put_before(*mine, std::move(*theirs));
+    }
+  }
+
+  fs::path folder_;
+  std::string unit_;
+  std::vector<fs::path>& files_;
+  std::vector<fs::path> open_;
+};
+
+}  // namespace
+
+void add_includes(TomlNode& tree, const fs::path& scene, std::vector<fs::path>& files) {
+  const std::string unit = text_in(std::get<TomlTable>(tree.value), "unit");
+  Includer(scene, unit.empty() ? "m" : unit, files).add(tree, scene);
+}
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/time/mission.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/sky/orbit.h"
+#include "scenes/sky/sky.h"
+
+namespace earthshine::scenes {
+namespace {
+
+constexpr double eclipse_step_s = 15.0;
+constexpr double eclipse_error_s = 1e-3;
+
+// Unit vectors in GCRS.
+struct LocalFrame {
+  Vec3 velocity, normal, zenith;
+
+  explicit LocalFrame(const State& state)
+      : normal(glm::normalize(glm::cross(state.position_m, state.velocity_m_s))),
+        zenith(glm::normalize(state.position_m)) {
+    velocity = glm::cross(normal, zenith);
+  }
+  [[nodiscard]] Vec3 components(const Vec3& d) const {
+    return {glm::dot(d, velocity), glm::dot(d, normal), glm::dot(d, zenith)};
+  }
+  [[nodiscard]] Vec3 from_components(const Vec3& c) const {
+    return c.x * velocity + c.y * normal + c.z * zenith;
+  }
+};
+
+// From the spacecraft: in a low orbit 0.003 deg from that of the Earth's centre.
+Vec3 sun_from(const State& state, Instant t) {
+  return glm::normalize(sun_direction(t) * sun_distance_m(t) - state.position_m);
+}
+
+// Directions in GCRS to the scene.
+class SceneAxes {
+ public:
+  SceneAxes(const Mission& mission, const LocalFrame& local, const Vec3& sun, Instant t)
+      : local_(local) {
+    if (mission.history) {
+      to_body_ = mission.body_axes * glm::mat3_cast(glm::conjugate(mission.history->at(t)));
+    } else if (mission.attitude == inertial_attitude) {
+      const State kept = mission.trajectory->at(mission.time.start);
+      const LocalFrame frame(kept);
+      const Vec3 sun_then = sun_from(kept, mission.time.start);
+      const BodyAxes axes = named_axes(mission.inertial_as, frame.components(sun_then));
+      axes_ = {local.components(frame.from_components(axes.aft)),
+               local.components(frame.from_components(axes.out_of_bay))};
+    } else {
+      axes_ = named_axes(mission.attitude, local.components(sun));
+    }
+  }
+  [[nodiscard]] Vec3 operator()(const Vec3& d) const {
+    if (to_body_) return glm::normalize(*to_body_ * d);
+    return axes_.in_scene(local_.components(d));
+  }
+
+ private:
+  LocalFrame local_;
+  BodyAxes axes_{};
+  std::optional<glm::dmat3> to_body_;
+};
+
+double angle_between(const Vec3& a, const Vec3& b) {
+  return 2.0 * std::atan2(glm::length(a - b), glm::length(a + b));
+}
+
+// How far the Sun's middle is from the Earth's limb, rad: negative behind it.
+double above_limb(const Mission& mission, Instant t) {
+  const State state = mission.trajectory->at(t);
+  const double distance_m = glm::length(state.position_m);
+  const double limb = earth_half_angle_rad(distance_m - base::earth_radius_m);
+  return angle_between(sun_from(state, t), -state.position_m / distance_m) - limb;
+}
+
+}  // namespace
+
+std::size_t TimeSpan::count() const {
+  if (!(step_s > 0.0)) return 1;
+  return static_cast<std::size_t>(std::floor((stop - start) / step_s + 1e-6)) + 1;
+}
+
+MissionState mission_state(const Mission& mission, Instant t) {
+  const State state = mission.trajectory->at(t);
+  const LocalFrame local(state);
+  const Vec3 sun = sun_from(state, t);
+  const SceneAxes in_scene(mission, local, sun, t);
+  MissionState found;
+  found.distance_m = glm::length(state.position_m);
+  found.sun = in_scene(sun);
+  found.earth = in_scene(-local.zenith);
+  found.north = in_scene(to_gcrs(Frame::Itrf, t, mission.clock) * Vec3(0.0, 0.0, 1.0));
+  const Vec3 s = local.components(sun);
+  found.beta_deg = base::degrees(std::asin(std::clamp(s.y, -1.0, 1.0)));
+  found.position_deg = base::degrees(std::atan2(-s.x, s.z));
+  if (found.position_deg < 0.0) found.position_deg += 360.0;
+  found.below = point_below(state.position_m, t, mission.clock);
+  return found;
+}
+
+const Mission* mission_of(const Scene& scene) {
+  return scene.orbit && scene.orbit->files ? scene.orbit->files->mission.get() : nullptr;
+}
+
+void move_to_moment(Scene& scene, Instant t) {
+  const MissionState state = mission_state(*mission_of(scene), t);
+  scene.orbit->altitude_m = state.distance_m - base::earth_radius_m;
+  scene.orbit->beta_deg = state.beta_deg;
+  scene.orbit->position_deg = state.position_deg;
+  if (scene.sun) scene.sun->direction = state.sun;
+  if (!scene.earth) return;
+  scene.earth->direction = state.earth;
+  scene.earth->altitude_m = scene.orbit->altitude_m;
+  scene.earth->half_angle_deg = base::degrees(earth_half_angle_rad(scene.earth->altitude_m));
+  if (scene.earth->by_latitude) scene.earth->by_latitude->north = state.north;
+}
+
+std::vector<EclipseTimes> eclipses_between(const Mission& mission, Instant from, Instant to,
+                                           double sun_angular_radius_deg) {
+  const double sun_rad = base::radians(sun_angular_radius_deg);
+  // 0: in the Sun, 1: in the penumbra, 2: in the umbra.
+  const auto depth = [&](Instant t) {
+    const double above = above_limb(mission, t);
+    return above >= sun_rad ? 0 : above > -sun_rad ? 1 : 2;
+  };
+  std::vector<EclipseTimes> found;
+  const auto cross = [&](Instant low, Instant high, int limit, bool enters) {
+    while (high - low > eclipse_error_s) {
+      const Instant middle = low + 0.5 * (high - low);
+      ((depth(middle) >= limit) == enters ? high : low) = middle;
+    }
+    if (found.empty() || (enters && limit == 1)) found.emplace_back();
+    EclipseTimes& eclipse = found.back();
+    (limit == 1 ? (enters ? eclipse.penumbra_begin : eclipse.penumbra_end)
+                : (enters ? eclipse.umbra_begin : eclipse.umbra_end)) = high;
+  };
+  int before = depth(from);
+  if (before > 0) found.emplace_back();
+  for (Instant t = from; t < to;) {
+    const Instant next = std::min(t + eclipse_step_s, to);
+    const int now = depth(next);
+    for (int limit = before + 1; limit <= now; ++limit) cross(t, next, limit, true);
+    for (int limit = before; limit > now; --limit) cross(t, next, limit, false);
+    before = now;
+    t = next;
+  }
+  return found;
+}
+
+double period_at(const Mission& mission, Instant t) {
+  return orbit_period_s(glm::length(mission.trajectory->at(t).position_m) - base::earth_radius_m);
+}
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// A spacecraft against time: its trajectory and attitude, and the sky that follows from them.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenes/scene.h"
+#include "scenes/time/attitude_history.h"
+#include "scenes/time/trajectory.h"
+
+namespace earthshine::scenes {
+
+// [time]: the moments start, start + step, ... to stop.
+struct TimeSpan {
+  Instant start, stop;
+  double step_s = 0.0;  // 0: of one moment
+
+  [[nodiscard]] std::size_t count() const;
+  [[nodiscard]] Instant at(std::size_t k) const { return start + step_s * static_cast<double>(k); }
+};
+
+struct Mission {
+  TimeSpan time;          // `start` is the moment of the scene's own Sun and Earth
+  bool has_span = false;  // [time] gives more than one moment
+  std::shared_ptr<const Trajectory> trajectory;
+  std::string attitude = "bay-to-earth";  // of orbit_attitudes or "inertial"; empty: by the history
+  std::string inertial_as = "bay-to-earth";  // kept as it is at time.start
+  std::shared_ptr<const AttitudeHistory> history;
+  glm::dmat3 body_axes{1.0};  // the columns are the history's body axes along the scene's
+  EarthClock clock;
+};
+
+struct MissionState {
+  Vec3 sun{0.0}, earth{0.0}, north{0.0};  // in the scene, unit
+  double distance_m = 0.0;                // from the Earth's centre
+  double beta_deg = 0.0;                  // height of the Sun over the orbit's plane
+  double position_deg = 0.0;              // from orbit noon along the motion, 0 to 360
+  GroundPoint below;
+};
+
+// Throws base::Error (Input) where trajectory or attitude have nothing.
+[[nodiscard]] MissionState mission_state(const Mission& mission, Instant t);
+
+// Of the scene; null without.
+[[nodiscard]] const Mission* mission_of(const Scene& scene);
+
+// Sets the scene's Sun, Earth and circle, and the pole of its albedo by latitude, to that moment of
+// its mission.
+void move_to_moment(Scene& scene, Instant t);
+
+// When the Earth, a sphere of base::earth_radius_m, hides the Sun; ends outside the span asked for
+// are left out.
+struct EclipseTimes {
+  std::optional<Instant> penumbra_begin, umbra_begin, umbra_end, penumbra_end;
+};
+// Between two moments of the trajectory, in order; looked for every 15 s and then halved to 1 ms.
+[[nodiscard]] std::vector<EclipseTimes> eclipses_between(const Mission& mission, Instant from,
+                                                         Instant to, double sun_angular_radius_deg);
+
+// Of the circle with the state's distance.
+[[nodiscard]] double period_at(const Mission& mission, Instant t);
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Missions as a user meets them: the scripts that write trajectories, inspect, a study along time, what is refused."""
+import csv
+import math
+import subprocess
+import sys
+import unittest
+
+import program
+from tiny_bay import BAY
+
+SCRIPTS = program.TOP / "scenes" / "time"
+CIRCLE = ("--start", "2026-03-01T12:00:00", "--hours", "3", "--altitude", "425", "--inclination", "28.5", "--node", "300")
+TIME = '[time]\nstart = "2026-03-01T12:00:00"\nstop = "2026-060T13:30:00"\nstep = 900\n'
+MISSION = BAY.replace("altitude_km = 425\n", 'trajectory = "circle.oem"\n') + TIME
+# The International Space Station on 2008 September 20.
+TLE = """ISS (ZARYA)
+1 25544U 98067A   08264.51782528 -.00002182  00000-0 -11606-4 0  2927
+2 25544  51.6416 247.4627 0006703 130.5360 325.0288 15.72125391563537
+"""
+
+
+class Missions(program.Case):
+    def setUp(self):
+        super().setUp()
+        self.script("circle_to_oem.py", "-o", "circle.oem", *CIRCLE)
+        self.write("bay.toml", MISSION)
+
+    def script(self, name, *arguments, python=sys.executable):
+        return subprocess.run([python, SCRIPTS / name, *arguments], cwd=self.folder, check=True, timeout=60,
+                              capture_output=True, text=True)
+
+    def test_inspect_shows_where_it_is(self):
+        facts = self.json("inspect", "bay.toml")["mission"]
+        self.assertEqual((facts["frame"], facts["time_system"], facts["moments"]), ("EME2000", "UTC", 7))
+        # At the node, on the equator; 425 km over 6371 km, 417.863 km over the equator of WGS 84.
+        self.assertAlmostEqual(facts["latitude_deg"], 0.0, delta=0.2)  # precession since 2000
+        self.assertAlmostEqual(facts["height_m"], 417863, delta=200)
+        # Greenwich's mean sidereal time is 18.697375 h + 24.0657098244 h * 9556 days since J2000 = 22.6205 h, or
+        # 339.307 deg; along the equator the node has gone on by precession, 46.1" a year in 26.16 years.
+        self.assertAlmostEqual(facts["longitude_deg"], 300 - 339.307 + 46.1 * 26.16 / 3600, delta=0.02)
+        period = 2 * math.pi * math.sqrt(6796e3 ** 3 / 3.986004418e14)
+        self.assertAlmostEqual(facts["period_s"], period, delta=0.01)
+        self.assertEqual(len(facts["eclipses"]), 1)
+        self.says(self.done("inspect", "bay.toml"), "trajectory: ", "EME2000", "TAI - UTC = 37 s", "beta", "eclipse: penumbra")
+
+    def test_a_study_goes_along_time(self):
+        study = self.json("study", "orbit", "bay.toml", "-o", "out", "--size", "12x12", "--camera", "B")
+        conditions = study["conditions"]
+        self.assertEqual([c["utc"] for c in conditions],
+                         [f"2026-03-01T{12 + k // 4}:{15 * (k % 4):02}:00Z" for k in range(7)])
+        self.assertEqual([c["time_s"] for c in conditions], [900 * k for k in range(7)])
+        # Even steps of a circle, on from turn to turn.
+        step = 900 / (2 * math.pi * math.sqrt(6796e3 ** 3 / 3.986004418e14)) * 360
+        for k, condition in enumerate(conditions):
+            self.assertAlmostEqual(condition["position_deg"], conditions[0]["position_deg"] + step * k, delta=0.1)
+        self.assertIn("eclipse", {c["phase"] for c in conditions})
+        with open(self.folder / "out" / "results.csv", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(rows[0]["utc"], "2026-03-01T12:00:00Z")
+        self.assertIn("2026-03-01T12:15:00Z", (self.folder / "out" / "report.html").read_text(encoding="utf-8"))
+
+    def test_a_study_file_has_its_own_time(self):
+        self.write("study.toml", 'format = 1\nscene = "bay.toml"\ncameras = ["B"]\nsize = "12x12"\nwanted = ["box>=0.01"]\n'
+                   '[time]\nstart = "2026-03-01T12:10:00"\nstop = "2026-03-01T12:12:00"\nstep = 60\n'
+                   '[[picture]]\nname = "one"\ncamera = "B"\ntime = "2026-03-01T12:11:00"\n')
+        study = self.json("study", "run", "study.toml", "-o", "out")
+        self.assertEqual([c["utc"] for c in study["conditions"]], [f"2026-03-01T12:1{k}:00Z" for k in range(3)])
+        self.assertIn("2026-03-01T12:10:00Z to 2026-03-01T12:12:00Z", study["answers"][0]["text"])
+        self.write("study.toml", 'format = 1\nscene = "bay.toml"\n[orbit]\npositions = 4\n')
+        self.says(self.refused("study", "run", "study.toml", "-o", "no"), "study.toml:3", "trajectory", "[time]")
+
+    def test_what_cannot_be_is_refused(self):
+        self.says(self.refused("study", "orbit", "bay.toml", "--positions", "4", "-o", "no"), "trajectory", "[time]")
+        self.says(self.refused("inspect", "bay.toml", "--set", "time.start=2026-03-02T12:00:00", "--set",
+                               "time.stop=2026-03-02T13:00:00"),
+                  "circle.oem", "no state at 2026-03-02T12:00:00Z", "2026-03-01T12:00:00Z to 2026-03-01T15:00:00Z")
+        text = (self.folder / "circle.oem").read_text(encoding="utf-8")
+        self.write("circle.oem", text[:-60])
+        self.says(self.refused("inspect", "bay.toml"), "circle.oem:", "numbers behind its date")
+        self.write("circle.oem", text.replace("EME2000", "MOON_ME"))
+        self.says(self.refused("inspect", "bay.toml"), "circle.oem:9", "MOON_ME", "EME2000", "TEME")
+
+    def test_two_line_elements_become_a_trajectory(self):
+        python = next((p for p in (sys.executable, "/usr/bin/python3")
+                       if subprocess.run([p, "-c", "import sgp4"], capture_output=True, check=False).returncode == 0), None)
+        if python is None:
+            self.skipTest("python3-sgp4 is not installed")
+        self.write("iss.tle", TLE)
+        self.script("tle_to_oem.py", "iss.tle", "-o", "circle.oem", "--start", "2008-09-20T12:25:40", "--stop",
+                    "2008-264T14:25:40", python=python)
+        facts = self.json("inspect", "bay.toml", "--set", "time.start=2008-09-20T12:25:40", "--set",
+                          "time.stop=2008-09-20T14:25:40")["mission"]
+        self.assertEqual((facts["object"], facts["frame"], facts["tai_minus_utc_s"]), ("ISS (ZARYA)", "TEME", 33))
+        # Latitude asin(sin i sin u) with the argument of latitude u = 130.536 + 325.029 deg of the epoch, which is
+        # the start: 51.6416 deg and 95.565 deg give 51.3 deg; the ellipsoid's is 0.19 deg more.
+        self.assertAlmostEqual(facts["latitude_deg"], 51.5, delta=0.2)
+        old = subprocess.run([python, SCRIPTS / "tle_to_oem.py", "iss.tle", "-o", "x.oem", "--start", "2026-03-01T12:00:00",
+                              "--stop", "2026-03-01T13:00:00"], cwd=self.folder, capture_output=True, text=True, check=False)
+        self.assertEqual(old.returncode, 1)
+        self.assertIn("days older", old.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

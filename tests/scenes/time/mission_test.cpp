@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+// Trajectory and attitude against time as a scene has them.
+#include "scenes/time/mission.h"
+
+#include <cmath>
+
+#include "scenes/sky/sky.h"
+#include "tests/scenes/scene_text.h"
+#include "tests/scenes/time/oem_text.h"
+
+namespace earthshine::scenes {
+namespace {
+
+using test::Ellipse;
+using test::holds;
+using test::oem_of;
+
+const Instant epoch = *read_instant("2026-03-01T12:00:00", TimeSystem::Utc);
+
+constexpr const char* mission_scene =
+    "format = 1\n[time]\nstart = \"2026-03-01T12:00:00\"\nstop = \"2026-060T15:00:00\"\nstep = "
+    "600\n"
+    "[orbit]\ntrajectory = \"t.oem\"\n";
+
+class MissionScene : public ::testing::Test {
+ protected:
+  MissionScene() { folder.put("t.oem", oem_of(circle, epoch, 60.0, 200)); }
+  Scene read(const std::string& more = "") { return folder.read(mission_scene + more); }
+  Ellipse circle;
+  test::SceneFolder folder;
+};
+
+// Sun, orbit plane and position as the test's own vectors have them.
+struct Sky {
+  double beta, position;  // rad
+};
+Sky sky_of(const Ellipse& circle, double s) {
+  const State state = circle.at(s);
+  const Vec3 r = glm::normalize(state.position_m);
+  const Vec3 n = glm::normalize(glm::cross(state.position_m, state.velocity_m_s));
+  const Vec3 sun = sun_direction(epoch + s);
+  return {std::asin(glm::dot(sun, n)),
+          std::atan2(-glm::dot(sun, glm::cross(n, r)), glm::dot(sun, r))};
+}
+
+// Closed form of a circle: the Sun's disc of radius rho touches the Earth's, of half angle h, at
+// pi -+ acos(cos(h + rho) / cos beta) from orbit noon, and is gone at the same with h - rho. The Sun
+// moves 0.6 s worth of orbit in half a turn, so that the position is that of the time itself.
+TEST_F(MissionScene, EclipsesOfACircleAreWhereTheClosedFormHasThem) {
+  const Scene scene = read();
+  const Mission& mission = *mission_of(scene);
+  const double rho = base::radians(scene.sun->angular_radius_deg);
+  const double h = std::asin(base::earth_radius_m / circle.semi_major_m);
+  const double period = 2.0 * base::pi / circle.mean_motion_rad_s();
+  const auto eclipses = eclipses_between(mission, mission.time.start, mission.time.stop,
+                                         scene.sun->angular_radius_deg);
+  ASSERT_EQ(eclipses.size(), 2U);
+  const auto check = [&](std::optional<Instant> found, double limit, double side) {
+    ASSERT_TRUE(found);
+    const double s = *found - epoch;
+    const Sky sky = sky_of(circle, s);
+    const double eta = std::acos(std::cos(limit) / std::cos(sky.beta));
+    const double off = std::remainder(sky.position - (base::pi + side * eta), 2.0 * base::pi);
+    EXPECT_NEAR(off / circle.mean_motion_rad_s(), 0.0, 1.0);
+  };
+  for (const EclipseTimes& eclipse : eclipses) {
+    check(eclipse.penumbra_begin, h + rho, -1.0);
+    check(eclipse.umbra_begin, h - rho, -1.0);
+    check(eclipse.umbra_end, h - rho, 1.0);
+    check(eclipse.penumbra_end, h + rho, 1.0);
+  }
+  // In a turn the Sun moves 0.065 deg, 1 s worth of orbit.
+  EXPECT_NEAR(*eclipses[1].umbra_begin - *eclipses[0].umbra_begin, period + 1.0, 0.5);
+}
+
+// The share of the Sun that a scene moved there has agrees with those times.
+TEST_F(MissionScene, TheScenesOwnSunGoesOutAtThoseTimes) {
+  Scene scene = read();
+  const Mission mission = *mission_of(scene);
+  const EclipseTimes eclipse = eclipses_between(mission, mission.time.start, mission.time.stop,
+                                                scene.sun->angular_radius_deg)[0];
+  const auto share_at = [&](Instant t) {
+    move_to_moment(scene, t);
+    return visible_sun_share(scene);
+  };
+  EXPECT_EQ(share_at(*eclipse.penumbra_begin + -0.1), 1.0);
+  EXPECT_LT(share_at(*eclipse.penumbra_begin + 0.5), 1.0);
+  EXPECT_GT(share_at(*eclipse.umbra_begin + -0.5), 0.0);
+  EXPECT_EQ(share_at(*eclipse.umbra_begin + 0.1), 0.0);
+  EXPECT_GT(share_at(*eclipse.umbra_end + 0.5), 0.0);
+}
+
+TEST_F(MissionScene, StandsOverTheGroundAndTheSunAsItsOwnVectorsSay) {
+  const Scene scene = read();
+  const MissionState state = mission_state(*mission_of(scene), epoch + 1234.0);
+  const Sky sky = sky_of(circle, 1234.0);
+  EXPECT_NEAR(state.beta_deg, base::degrees(sky.beta), 0.003);  // the Sun from the spacecraft
+  EXPECT_NEAR(std::remainder(state.position_deg - base::degrees(sky.position), 360.0), 0.0, 0.003);
+  EXPECT_NEAR(state.distance_m, circle.semi_major_m, 0.01);
+  // Geocentric latitude asin(sin i sin u); the geodetic one is up to 0.2 deg more.
+  const double u = circle.mean_motion_rad_s() * 1234.0;
+  const double latitude =
+      base::degrees(std::asin(std::sin(base::radians(circle.inclination_deg)) * std::sin(u)));
+  EXPECT_NEAR(state.below.latitude_deg, latitude, 0.35);
+}
+
+// With the local vertical known, each attitude puts the Earth where its name says.
+TEST_F(MissionScene, NamedAttitudesPointWhereTheySay) {
+  const auto earth_of = [&](const std::string& attitude, double s) {
+    Scene scene = read("attitude = \"" + attitude + "\"\n");
+    move_to_moment(scene, epoch + s);
+    return scene;
+  };
+  for (const double s : {0.0, 1500.0, 4000.0}) {
+    EXPECT_LT(glm::length(earth_of("bay-to-earth", s).earth->direction - Vec3(0, 0, 1)), 1e-12);
+    EXPECT_LT(glm::length(earth_of("bay-to-space", s).earth->direction - Vec3(0, 0, -1)), 1e-12);
+    EXPECT_LT(glm::length(earth_of("tail-down", s).earth->direction - Vec3(1, 0, 0)), 1e-12);
+    EXPECT_LT(glm::length(earth_of("bay-to-sun", s).sun->direction - Vec3(0, 0, 1)), 1e-12);
+    // Inertial: as bay-to-earth at the start; then the Earth goes round the orbit's normal, the
+    // scene's y against it, and the Sun stays, but for the 1 deg of a day that it moves.
+    const Scene kept = earth_of("inertial", s);
+    const double u = circle.mean_motion_rad_s() * s;
+    EXPECT_LT(glm::length(kept.earth->direction - Vec3(std::sin(u), 0.0, std::cos(u))), 1e-6) << s;
+    EXPECT_LT(glm::length(kept.sun->direction - earth_of("inertial", 0.0).sun->direction), 2e-3);
+  }
+}
+
+// No turn from GCRF: the scene's axes are those of the frame, through body_axes.
+TEST_F(MissionScene, AttitudeFilesTurnTheSkyByTheirBodyAxes) {
+  folder.put("a.aem",
+             "CCSDS_AEM_VERS = 2.0\nMETA_START\nREF_FRAME_A = GCRF\nREF_FRAME_B = SC_BODY\n"
+             "TIME_SYSTEM = UTC\nATTITUDE_TYPE = QUATERNION\nMETA_STOP\n"
+             "2026-03-01T12:00:00 0 0 0 1\n2026-03-01T16:00:00 0 0 0 1\n");
+  const Vec3 sun =
+      glm::normalize(sun_direction(epoch) * sun_distance_m(epoch) - circle.at(0.0).position_m);
+  const std::string file = "attitude = \"a.aem\"\nbody_axes = ";
+  EXPECT_LT(glm::length(read(file + "[\"x\", \"y\", \"z\"]\n").sun->direction - sun), 1e-9);
+  EXPECT_LT(glm::length(read(file + "[\"-x\", \"y\", \"-z\"]\n").sun->direction -
+                        Vec3(-sun.x, sun.y, -sun.z)),
+            1e-9);
+  // The file's x along the scene's y, its y along z, its z along x.
+  EXPECT_LT(glm::length(read(file + "[\"y\", \"z\", \"x\"]\n").sun->direction -
+                        Vec3(sun.z, sun.x, sun.y)),
+            1e-9);
+  EXPECT_TRUE(holds(folder.refusal(std::string(mission_scene) + "attitude = \"a.aem\"\n"),
+                    {"scene.toml:8:1", "no body_axes", "nose, starboard and belly"}));
+  EXPECT_TRUE(holds(folder.refusal(mission_scene + file + "[\"x\", \"y\", \"-z\"]\n"),
+                    {"scene.toml:9:1", "left-handed"}));
+}
+
+TEST_F(MissionScene, MomentsGoFromStartToStop) {
+  const Scene scene = read();
+  const TimeSpan& time = mission_of(scene)->time;
+  EXPECT_EQ(time.count(), 19U);
+  EXPECT_EQ(utc_text(time.at(18)), "2026-03-01T15:00:00Z");
+  // Without [time]: where the trajectory begins.
+  folder.put("late.oem", oem_of(circle, epoch + 30.0, 60.0, 20));
+  const Scene late = folder.read("format = 1\n[orbit]\ntrajectory = \"late.oem\"\n");
+  EXPECT_EQ(utc_text(mission_of(late)->time.start), "2026-03-01T12:00:30Z");
+  EXPECT_EQ(mission_of(late)->time.count(), 1U);
+}
+
+TEST_F(MissionScene, DatesOfTomlAreUtc) {
+  const char* const orbit = "format = 1\n[orbit]\ntrajectory = \"t.oem\"\n[time]\n";
+  for (const char* date :
+       {"2026-03-01T12:00:30", "2026-03-01T12:00:30Z", "\"2026-060T12:00:30\""}) {
+    const Scene scene = folder.read(fmt::format("{}start = {}\n", orbit, date));
+    EXPECT_EQ(mission_of(scene)->time.start, epoch + 30.0) << date;
+  }
+  const Scene set = folder.read(orbit + std::string("start = 2026-03-01T12:00:00\n"),
+                                {"time.start=2026-03-01T12:00:30"});
+  EXPECT_EQ(mission_of(set)->time.start, epoch + 30.0);
+}
+
+TEST_F(MissionScene, BadKeysAreRefused) {
+  const std::string orbit = "[orbit]\ntrajectory = \"t.oem\"\n";
+  const struct {
+    std::string text;
+    std::vector<std::string> says;
+  } bad[] = {
+      {"[time]\nstart = \"2026-03-01T12:00:00\"\n", {"scene.toml:2:1", "without a trajectory"}},
+      {"[time]\nstart = \"1 March 2026\"\n" + orbit, {"scene.toml:3:1", "1 March 2026", "UTC"}},
+      {"[time]\nstart = 2026-03-01T12:00:00+01:00\n" + orbit, {"scene.toml:3:1", "+01:00", "UTC"}},
+      {"[time]\nstart = \"2026-03-01T12:00:00\"\nstop = \"2026-03-01T13:00:00\"\n" + orbit,
+       {"\"step\"", "missing"}},
+      {"[time]\nstart = \"2026-03-01T12:00:00\"\nstop = \"2026-03-01T11:00:00\"\nstep = 60\n" +
+           orbit,
+       {"stop comes after start"}},
+      {"[time]\nstart = \"2026-03-01T12:00:00\"\nstop = \"2026-03-01T13:00:00\"\nstep = 0.1\n" +
+           orbit,
+       {"more than 3600 moments"}},
+      {"[time]\nstart = \"2026-03-02T12:00:00\"\n" + orbit,
+       {"t.oem", "no state at 2026-03-02T12:00:00Z", "2026-03-01T12:00:00Z to"}},
+      {orbit + "altitude_km = 400\n", {"scene.toml:4:1", "altitude_km"}},
+      {orbit + "quaternion = \"scalar-first\"\n", {"belongs to an attitude from a file"}},
+      {orbit + "attitude = \"nose-up\"\n", {"nose-up", "bay-to-earth", "inertial"}},
+      {"[orbit]\ntrajectory = \"none.oem\"\n", {"scene.toml:3:1", "none.oem"}},
+  };
+  for (const auto& one : bad) {
+    const std::string said = folder.refusal("format = 1\n" + one.text);
+    EXPECT_TRUE(holds(said, one.says)) << said;
+  }
+}
+
+}  // namespace
+}  // namespace earthshine::scenes
