@@ -11,6 +11,7 @@
 #include "raytrace/incoming/incoming_light.h"
 #include "raytrace/light/light_sampler.h"
 #include "raytrace/paths/path_tracer.h"
+#include "scenes/reflect/brdf.h"
 
 namespace earthshine::raytrace {
 
@@ -56,17 +57,15 @@ class PathWalker {
 
  private:
   struct Surface {
-    const scenes::Material& material;
+    scenes::Brdf brdf;  // its normal on the side that the path arrives from
     Vec3 position;
-    Vec3 outward;   // unit normal of the front
-    Vec3 normal;    // the same on the side that the path arrives from
-    Vec3 mirrored;  // the path's direction reflected
-    bool shines;    // reflects and emits: false inside glass
-    Rgb diffuse;    // k_d there
+    Vec3 outward;  // unit normal of the front
+    bool shines;   // reflects and emits: false inside glass
     std::uint32_t triangle;
     double offset_m;  // of rays that leave it
-    [[nodiscard]] Vec3 lifted() const { return position + offset_m * normal; }
-    [[nodiscard]] bool reflects() const { return shines && material.reflects(); }
+    [[nodiscard]] const scenes::Material& material() const { return brdf.material; }
+    [[nodiscard]] Vec3 lifted() const { return position + offset_m * brdf.normal; }
+    [[nodiscard]] bool reflects() const { return shines && material().reflects(); }
   };
 
   void begin(const Ray& start, base::Rng& rng);
@@ -91,7 +90,7 @@ class PathWalker {
     straight_ = true;
     mirrors_ = 0;
   }
-  void scatter(const Surface& surface, bool by_lobe);
+  void scatter(const Surface& surface, scenes::Brdf::Term term);
 
   const PathWorld& world_;
   std::optional<scenes::EarthRadiance> earth_;

@@ -13,6 +13,7 @@
 #include "raytrace/frame/options.h"
 #include "raytrace/gather/gather_field.h"
 #include "raytrace/light/light_sampler.h"
+#include "scenes/reflect/brdf.h"
 
 namespace earthshine::raytrace {
 
@@ -98,14 +99,12 @@ class PixelShader {
   // What kind of ray asks, which decides what it may see of the sources themselves.
   enum class Seen { ByCamera, ByLobe };
   struct Surface {
-    const scenes::Material& material;
+    scenes::Brdf brdf;
     Vec3 position;
     Vec3 outward;     // unit normal of the front
-    Vec3 normal;      // the same on the side of the viewer
-    Vec3 view;        // unit, toward the viewer
-    Rgb diffuse;      // k_d there
     double offset_m;  // of rays that leave it
-    [[nodiscard]] Vec3 lifted() const { return position + offset_m * normal; }
+    [[nodiscard]] const scenes::Material& material() const { return brdf.material; }
+    [[nodiscard]] Vec3 lifted() const { return position + offset_m * brdf.normal; }
   };
 
   // counter: the kind of ray it is.

@@ -24,7 +24,7 @@ void PixelShader::diffuse(const Surface& surface, const scenes::Hit& hit, const 
     return;
   }
   if (!shared_.gathers) return;
-  const Rgb reflected = weight * surface.diffuse;
+  const Rgb reflected = weight * surface.brdf.diffuse;
   if (has_points(depth) && read_field(surface, reflected)) return;
   gather(surface, reflected, depth);
 }
@@ -39,7 +39,7 @@ void PixelShader::read_solution(const scenes::Hit& hit, const Rgb& weight, int d
 GatherField::Reading PixelShader::read_points(const Surface& surface, Gathered kind) const {
   const GatherField& field = *shared_.field;
   const Vec3 seen = mirror_ ? mirror_->image(surface.position) : surface.position;
-  const Vec3 normal = mirror_ ? glm::reflect(surface.normal, mirror_->normal) : surface.normal;
+  const Vec3 normal = mirror_ ? glm::reflect(surface.brdf.normal, mirror_->normal) : surface.brdf.normal;
   const Sighting place{glm::vec3(seen - shared_.sighting_origin), glm::vec3(normal),
                        mirror_.has_value()};
   std::size_t own = field.find(x_, y_, place);
@@ -75,10 +75,10 @@ bool PixelShader::read_lobe(const Surface& surface, const Rgb& weight) {
   const GatherField::Reading read = read_points(surface, Gathered::Lobe);
   if (read.count == 0) return false;
   const std::uint32_t material = shared_.field->points()[read.point[0]].material;
-  if (&shared_.scene.materials[material] != &surface.material) return false;
+  if (&shared_.scene.materials[material] != &surface.material()) return false;
   if (shared_.field->points()[read.point[0]].lobe <= 0.0F) return false;
   for (std::size_t k = 0; k < read.count; ++k) {
-    const Rgb part = weight * surface.material.specular * double(read.weight[k]);
+    const Rgb part = weight * surface.material().specular * double(read.weight[k]);
     term_of(read.point[k]).lobe += glm::vec3(part);
     count_read(shared_.field->lobe_sum(read.point[k]), part);
   }
@@ -86,7 +86,7 @@ bool PixelShader::read_lobe(const Surface& surface, const Rgb& weight) {
 }
 
 void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
-  const base::Frame3 frame = base::frame_around(surface.normal);
+  const base::Frame3 frame = base::frame_around(surface.brdf.normal);
   const Vec3 origin = surface.lifted();
   const int count = depth > 0       ? tuning::rays_behind_mirror
                     : shared_.field ? tuning::rays_without_point
@@ -96,7 +96,7 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   ray.sample = sample_;
   ray.part = depth == 0 ? Part::Indirect : Part::Specular;
   ray.share.found_rays = count;
-  ray.share.from = {origin, surface.normal};
+  ray.share.from = {origin, surface.brdf.normal};
   // Cosine-distributed rays: L = (k_d / pi) integral L_in cos = k_d mean(L_in).
   ray.weight = weight / static_cast<double>(count);
   rays_.gather += static_cast<std::uint64_t>(count);
@@ -120,7 +120,7 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   if (!shares) return;
   const double choice = rng_.next(), x = rng_.next(), y = rng_.next();
   const IncomingLight::Aimed aimed =
-      shared_.incoming.aim({origin, surface.normal}, choice, x, y, count, 1.0);
+      shared_.incoming.aim({origin, surface.brdf.normal}, choice, x, y, count, 1.0);
   if (aimed.weight <= 0.0) return;
   ++rays_.gather;
   ray.direction = aimed.direction;

@@ -75,9 +75,6 @@ struct LampHit {
 [[nodiscard]] std::optional<LampHit> hit_lamp(const Lamp& lamp, const Vec3& origin,
                                               const Vec3& direction);
 
-// A direction with density cos / pi about frame.normal.
-[[nodiscard]] Vec3 cosine_direction(const base::Frame3& frame, double x, double y);
-
 // Light that reaches a point from a distant disc of directions, sampled uniformly over its solid
 // angle.
 class Cone {

@@ -2,9 +2,6 @@
 // Where light goes on from a mirror or glass.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
 #include "scenes/ray_query.h"
 #include "scenes/scene.h"
 
@@ -38,19 +35,5 @@ struct SpecularStep {
 };
 [[nodiscard]] SpecularStep specular_step(const Scene& scene, const Hit& hit, const Vec3& direction,
                                          double offset_m, bool aimed = false);
-
-// The lobe's shape, times k_s: cos^n alpha, over the larger cosine to the normal where the material
-// has an even lobe. cos_in, cos_out: of the two directions, above 0.
-[[nodiscard]] inline double lobe_at(const Material& material, double cos_alpha, double cos_in,
-                                    double cos_out) {
-  const double lobe = std::pow(cos_alpha, material.shininess);
-  return material.even_lobe ? lobe / std::max(cos_in, cos_out) : lobe;
-}
-// The lobe times the cosine of the direction drawn by the density (n + 1) cos^n alpha / (2 pi), over
-// that density and pi: what a ray along it weighs.
-[[nodiscard]] inline double lobe_weight(const Material& material, double cos_in, double cos_out) {
-  const double cosine = material.even_lobe ? cos_out / std::max(cos_in, cos_out) : cos_out;
-  return 2.0 * cosine / (material.shininess + 1.0);
-}
 
 }  // namespace earthshine::scenes

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "scenes/reflect/brdf.h"
 #include "scenes/reflect/specular.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_cells.h"
@@ -81,9 +82,9 @@ void PatchLooks::gather(const LookingPoint& from, const base::SobolOwen4& sequen
   for (std::size_t first = point * rays; first < (point + 1) * rays; first += RayPacket::width) {
     for (std::size_t k = 0; k < RayPacket::width; ++k) {
       const auto u = sequence.point2(static_cast<std::uint32_t>(first + k));
-      const double r = std::sqrt(double(u[0])), phi = 2.0 * base::pi * double(u[1]);
-      cosine[k] = std::sqrt(1.0 - double(u[0]));
-      directions[k] = frame.to_world({r * std::cos(phi), r * std::sin(phi), cosine[k]});
+      const Vec3 local = scenes::cosine_sample(double(u[0]), double(u[1]));
+      cosine[k] = local.z;
+      directions[k] = frame.to_world(local);
       scene_.query.set(packet, k, from.at + from.lift, directions[k]);
     }
     scene_.query.closest(packet, RayPacket::width, hits);
