@@ -32,7 +32,7 @@ void PathWalker::begin(const Ray& start, base::Rng& rng) {
 }
 
 std::span<const Rgb> PathWalker::finished() {
-  world_.lights.turns().weigh(turn_of_suns_, radiance_);
+  world_.lights.sun_strata().weigh(sun_stratum_, radiance_);
   return radiance_;
 }
 
@@ -122,71 +122,39 @@ void PathWalker::see_sky() {
 }
 
 bool PathWalker::see_lamp(const scenes::Hit& hit) {
-  scenes::LampHit nearest{hit.missed() ? std::numeric_limits<double>::infinity() : hit.t, Rgb(0.0)};
-  std::size_t group = no_group;
-  for (std::size_t k = 0; k < world_.scene.lamps.size(); ++k) {
-    if (world_.groups.lamp[k] == no_group) continue;
-    const auto lamp = scenes::hit_lamp(world_.scene.lamps[k], ray_.origin, ray_.direction);
-    if (!lamp || lamp->distance_m >= nearest.distance_m) continue;
-    nearest = *lamp;
-    group = world_.groups.lamp[k];
-  }
-  see(group, nearest.radiance);
-  return group != no_group;
+  const double nearest_m = hit.missed() ? std::numeric_limits<double>::infinity() : hit.t;
+  const auto seen = world_.lights.seen_lamp(ray_.origin, ray_.direction, nearest_m);
+  if (seen) see(world_.groups.lamp[seen->lamp], seen->hit.radiance);
+  return seen.has_value();
 }
 
 // One shadow ray to every source that is reached so: L = (E cos / pi) (k_d + k_s cos^n alpha).
 void PathWalker::light_directly(const Surface& surface) {
-  constexpr std::size_t width = scenes::RayPacket::width;
-  const Vec3 origin = surface.lifted();
-  scenes::RayPacket packet;
-  std::array<Rgb, width> value;
-  std::array<std::size_t, width> group{};
-  std::array<scenes::LightKind, width> kind{};
-  std::array<std::uint32_t, width> mirror{};
-  std::array<Rgb, width> shares;
-  std::size_t count = 0;
-  const auto trace = [&] {
-    if (count > 0) world_.query.light_shares(packet, mirror.data(), count, shares.data());
-    for (std::size_t k = 0; k < count; ++k) {
-      rays_.add_shadow(kind[k]);
-      add(group[k], shares[k] * value[k]);
-    }
-    count = 0;
+  const auto take = [&](const Arriving& light, const Rgb& share) {
+    rays_.add_shadow(light.kind);
+    add(light.group, share * light.radiance);
   };
   // Each light has numbers of its own, so that a lamp that is switched off moves no other's light.
   const base::Key key(static_cast<std::uint64_t>(rng_->next() * 0x1p53), base::Stream::LightSample,
                       0);
-  std::optional<Vec3> on_sun;  // of the Suns of a sky in parts
-  const auto sample = [&](std::size_t k) {
-    if (world_.lights.is_sun_part(k)) {
-      if (!on_sun) {
-        on_sun =
-            world_.lights.sun_place(base::uniform(key.with(k), 0), base::uniform(key.with(k), 1));
-      }
-      return world_.lights.sample_sun(k, surface.position, *on_sun);
-    }
-    const bool chooses = world_.lights.has_extent(k);
-    const double u = chooses ? base::uniform(key.with(k), 0) : 0.0;
-    const double v = chooses ? base::uniform(key.with(k), 1) : 0.0;
-    return world_.lights.sample(k, surface.position, u, v);
+  const auto uniform = [&](std::size_t k) -> glm::dvec2 {
+    return {base::uniform(key.with(k), 0), base::uniform(key.with(k), 1)};
   };
+  std::optional<Vec3> on_sun;
+  const Vec3 origin = surface.lifted();
   world_.lights.each_that_may_reach(
-      surface.position, surface.brdf.normal, turn_of_suns_, [&](std::size_t k) {
-        const scenes::LightSample light = sample(k);
+      surface.position, surface.brdf.normal, sun_stratum_, [&](std::size_t k) {
+        const scenes::LightSample light =
+            world_.lights.sample(k, surface.position, uniform, on_sun);
         const double cosine = glm::dot(light.direction, surface.brdf.normal);
         if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) return;
         const Rgb reflectance = surface.brdf.eval(light.direction, cosine);
-        const scenes::ShadowWay way = scenes::shadow_way(light, surface.position, origin);
-        if (way.reach_m <= 0.0) return;
-        value[count] = reflectance * light.normal_illuminance_lx * (cosine / pi);
-        group[count] = world_.lights.group(k);
-        kind[count] = world_.lights.kind(k);
-        mirror[count] = light.mirror;
-        world_.query.set(packet, count, origin, way.direction, way.reach_m);
-        if (++count == width) trace();
+        shadows_.add(light, surface.position, origin,
+                     {reflectance * light.normal_illuminance_lx * (cosine / pi),
+                      world_.lights.group(k), world_.lights.kind(k)},
+                     take);
       });
-  trace();
+  shadows_.trace(take);
 }
 
 // Chooses a mechanism in proportion to what it reflects and turns the ray by it. Some of the rays

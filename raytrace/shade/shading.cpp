@@ -17,6 +17,8 @@ namespace {
 using base::pi;
 using scenes::no_group;
 
+constexpr std::size_t most_shadow_rays = 256;  // that wait to be traced together
+
 }  // namespace
 
 bool gathers_at(const scenes::Scene& scene, const scenes::Hit& hit, GatherRequest& request) {
@@ -38,7 +40,8 @@ PixelShader::PixelShader(const ShadingScene& shared)
       scratch_(shared.layers),
       gather_points_{base::SobolOwen4(base::Key(0, base::Stream::FinalGather, 0)),
                      base::SobolOwen4(base::Key(0, base::Stream::FinalGather, 0))},
-      rng_(base::Key(0, base::Stream::Roulette, 0)) {
+      rng_(base::Key(0, base::Stream::Roulette, 0)),
+      shadows_(shared.query, most_shadow_rays) {
   if (shared.world != nullptr) walker_.emplace(*shared.world);
 }
 
@@ -71,7 +74,7 @@ void PixelShader::add_sample(std::size_t sample, const Ray& ray, const scenes::H
 }
 
 void PixelShader::end_pixel() {
-  trace_shadows();
+  shadows_.trace([this](const Arriving& arriving, const Rgb& share) { take(arriving, share); });
   flush_gather();
 }
 
@@ -191,21 +194,13 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
       {surface.position, surface.brdf.normal, surface.brdf.mirrored, base::max_component(surface.brdf.diffuse),
        most * base::max_component(surface.material().specular), surface.material().shininess},
       double(choice[0]) + 0x1p-24 * double(choice[1]), chosen_);
-  std::optional<Vec3> on_sun;  // of the Suns of a sky in parts
-  const auto sample = [&](std::size_t k, const Vec3& point) {
-    if (shared_.lights.is_sun_part(k)) {
-      if (!on_sun) {
-        const auto u = light_point(k);
-        on_sun = shared_.lights.sun_place(double(u[0]), double(u[1]));
-      }
-      return shared_.lights.sample_sun(k, point, *on_sun);
-    }
-    const auto u = shared_.lights.has_extent(k) ? light_point(k) : std::array<float, 2>{};
-    return shared_.lights.sample(k, point, double(u[0]), double(u[1]));
+  std::optional<Vec3> on_sun;
+  const auto take_light = [this](const Arriving& arriving, const Rgb& share) {
+    take(arriving, share);
   };
   const auto reflect = [&](std::size_t k, const Vec3& point, double share) {
     if (share <= 0.0 || !shared_.lights.may_reach(k, point, surface.brdf.normal)) return;
-    const scenes::LightSample light = sample(k, point);
+    const scenes::LightSample light = shared_.lights.sample(k, point, light_point, on_sun);
     const double cosine = glm::dot(light.direction, surface.brdf.normal);
     if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) return;
     // L = (E cos / pi) (k_d + k_s cos^n alpha): the measured Phong form.
@@ -213,11 +208,11 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
     const Rgb incident = weight * light.normal_illuminance_lx * (share * cosine / pi);
     const Rgb value = incident * (surface.brdf.diffuse + highlight);
     const Vec3 start = point + surface.brdf.normal * surface.offset_m;
-    const scenes::ShadowWay way = scenes::shadow_way(light, point, start);
-    if (!base::is_lit(value) || way.reach_m <= 0.0) return;
-    queue_shadow({start, way.direction, way.reach_m, k, value, incident * highlight,
-                  shared_.layer[shared_.lights.group(k)], sample_, depth == 0,
-                  shared_.lights.kind(k), light.mirror});
+    if (!base::is_lit(value)) return;
+    shadows_.add(light, point, start,
+                 {value, incident * highlight, shared_.layer[shared_.lights.group(k)], sample_,
+                  depth == 0, shared_.lights.kind(k)},
+                 take_light, k);
   };
   std::optional<Footprint> footprint;  // that lamps without size ask for
   for (const auto& [k, chance_weight] : chosen_) {

@@ -10,12 +10,6 @@ namespace earthshine::raytrace {
 
 using base::pi;
 
-namespace {
-
-constexpr std::size_t most_shadow_rays = 256;  // that wait to be traced together
-
-}  // namespace
-
 void PixelShader::diffuse(const Surface& surface, const scenes::Hit& hit, const Rgb& weight,
                           int depth) {
   const bool planned = shared_.diffuse == DiffuseSource::Solution;
@@ -131,40 +125,16 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   queue_gather(origin, ray);
 }
 
-void PixelShader::queue_shadow(const ShadowRay& ray) {
-  shadow_rays_.push_back(ray);
-  if (shadow_rays_.size() == most_shadow_rays) trace_shadows();
-}
-
-// Those to one light side by side: they go the same way.
-void PixelShader::trace_shadows() {
-  std::stable_sort(shadow_rays_.begin(), shadow_rays_.end(),
-                   [](const ShadowRay& a, const ShadowRay& b) { return a.light < b.light; });
-  scenes::RayPacket packet;
-  std::array<std::uint32_t, width> mirrors;
-  std::array<Rgb, width> shares;
-  for (std::size_t first = 0; first < shadow_rays_.size(); first += width) {
-    const std::size_t count = std::min(width, shadow_rays_.size() - first);
-    for (std::size_t k = 0; k < count; ++k) {
-      const ShadowRay& ray = shadow_rays_[first + k];
-      shared_.query.set(packet, k, ray.origin, ray.direction, ray.reach_m);
-      mirrors[k] = ray.mirror;
-    }
-    shared_.query.light_shares(packet, mirrors.data(), count, shares.data());
-    for (std::size_t k = 0; k < count; ++k) {
-      const ShadowRay& ray = shadow_rays_[first + k];
-      rays_.add_shadow(ray.kind);
-      if (base::max_component(shares[k]) <= 0.0) continue;
-      add(ray.layer, ray.sample, ray.by_camera ? Part::Direct : Part::Specular,
-          shares[k] * ray.value);
-      if (shared_.splits_parts && ray.by_camera) {
-        const Rgb specular = shares[k] * ray.specular;
-        sums_[shared_.layers + static_cast<std::size_t>(Part::Direct)] -= specular;
-        sums_[shared_.layers + static_cast<std::size_t>(Part::Specular)] += specular;
-      }
-    }
+void PixelShader::take(const Arriving& light, const Rgb& share) {
+  rays_.add_shadow(light.kind);
+  if (base::max_component(share) <= 0.0) return;
+  add(light.layer, light.sample, light.by_camera ? Part::Direct : Part::Specular,
+      share * light.radiance);
+  if (shared_.splits_parts && light.by_camera) {
+    const Rgb specular = share * light.specular;
+    sums_[shared_.layers + static_cast<std::size_t>(Part::Direct)] -= specular;
+    sums_[shared_.layers + static_cast<std::size_t>(Part::Specular)] += specular;
   }
-  shadow_rays_.clear();
 }
 
 void PixelShader::queue_gather(const Vec3& origin, const GatherRay& ray) {
@@ -177,7 +147,7 @@ void PixelShader::queue_gather(const Vec3& origin, const GatherRay& ray) {
 void PixelShader::add_lacking(const GatherRay& ray, const scenes::Hit& hit) {
   base::Rng rng(
       base::Key(shared_.seed, base::Stream::Residual, pixel_).with(ray.sample).with(ray.number));
-  walker_->take_turn(pixel_ + ray.number, ray.sample / 2, ray.sample % 2);
+  walker_->select_sun_stratum(pixel_ + ray.number, ray.sample / 2, ray.sample % 2);
   const auto lacking =
       walker_->residual(shared_.incoming, {Vec3(0.0), ray.direction}, hit, ray.share, rng);
   for (std::size_t layer = 0; layer < shared_.layers; ++layer) {

@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
 #include "base/numbers/random.h"
 #include "base/parallel.h"
 #include "raytrace/light/light_sampler.h"
+#include "scenes/light/shadow_queue.h"
 #include "scenes/text/message_text.h"
 #include "studies/error/error_budget.h"
 
@@ -19,8 +19,6 @@ namespace {
 
 constexpr std::size_t points = 2048;
 constexpr std::size_t most_named = 3;
-
-using scenes::RayPacket;
 
 // Sides of triangles, to draw points from evenly over their area.
 struct Side {
@@ -136,22 +134,29 @@ class Finder {
     std::vector<scenes::LightChoice> chosen;
     lights_.choose({at, normal, normal, 1.0, 0.0, 0.0}, base::uniform(key, 2), chosen);
     Falling found;
+    struct Arriving {
+      Rgb lx;
+      double scale;
+      bool thrown;
+    };
+    scenes::ShadowQueue<Arriving> shadows(study_.query);
+    const auto take = [&](const Arriving& of, const Rgb& share) {
+      (of.thrown ? found.thrown : found.straight) +=
+          of.scale * base::luminance(share * of.lx);
+    };
     for (const auto& [light, weight] : chosen) {
       if (!is_asked(light)) continue;
       const base::Key own = key.with(light);
       const scenes::LightSample sample =
           lights_.sample(light, at, base::uniform(own, 0), base::uniform(own, 1));
       const double cosine = glm::dot(sample.direction, normal);
-      const scenes::ShadowWay way = scenes::shadow_way(sample, at, origin);
-      if (cosine <= 0.0 || way.reach_m <= 0.0) continue;
-      RayPacket packet;
-      std::array<std::uint32_t, RayPacket::width> mirror{sample.mirror};
-      std::array<Rgb, RayPacket::width> share;
-      study_.query.set(packet, 0, origin, way.direction, way.reach_m);
-      study_.query.light_shares(packet, mirror.data(), 1, share.data());
-      const double lx = weight * cosine * base::luminance(share[0] * sample.normal_illuminance_lx);
-      (sample.mirror == scenes::no_mirror ? found.straight : found.thrown) += lx;
+      if (cosine <= 0.0) continue;
+      shadows.add(sample, at, origin,
+                  {sample.normal_illuminance_lx, weight * cosine,
+                   sample.mirror != scenes::no_mirror},
+                  take);
     }
+    shadows.trace(take);
     return found;
   }
 

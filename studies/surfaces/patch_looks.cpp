@@ -41,28 +41,19 @@ void PatchLooks::look_at(const radiosity::Source& source, const LookingPoint& fr
 
 void PatchLooks::add_shadow_ray(const LookingPoint& from, const scenes::LightSample& sample,
                                 const Rgb& lx, std::size_t look, std::size_t group, bool twice) {
-  const Vec3 origin = from.at + from.lift;
-  const scenes::ShadowWay way = scenes::shadow_way(sample, from.at, origin);
-  if (base::max_component(lx) <= 0.0 || way.reach_m <= 0.0) return;
-  scene_.query.set(packet_, count_, origin, way.direction, way.reach_m);
-  mirror_[count_] = sample.mirror;
-  lx_[count_] = lx;
-  to_[count_] = look * groups_ + group;
-  twice_[count_] = twice;
-  if (++count_ == RayPacket::width) finish_shadows();
+  if (base::max_component(lx) <= 0.0) return;
+  shadows_.add(sample, from.at, from.at + from.lift, {lx, look * groups_ + group, twice},
+               [this](const Arriving& light, const Rgb& share) { take(light, share); });
+}
+
+void PatchLooks::take(const Arriving& light, const Rgb& share) {
+  const Rgb arrives = share * light.lx;
+  lamps_[light.to] += arrives;
+  if (light.twice) lamps_[light.to + groups_] += arrives;
 }
 
 void PatchLooks::finish_shadows() {
-  if (count_ == 0) return;
-  std::array<Rgb, RayPacket::width> shares;
-  scene_.query.light_shares(packet_, mirror_.data(), count_, shares.data());
-  for (std::size_t k = 0; k < count_; ++k) {
-    const Rgb arrives = shares[k] * lx_[k];
-    lamps_[to_[k]] += arrives;
-    if (twice_[k]) lamps_[to_[k] + groups_] += arrives;
-  }
-  rays_ += count_;
-  count_ = 0;
+  shadows_.trace([this](const Arriving& light, const Rgb& share) { take(light, share); });
 }
 
 void PatchLooks::gather(const LookingPoint& from, const base::SobolOwen4& sequence,

@@ -9,7 +9,7 @@
 #include "base/numbers/random.h"
 #include "radiosity/direct/sources.h"
 #include "raytrace/incoming/incoming_light.h"
-#include "scenes/light/lamp_light.h"
+#include "scenes/light/shadow_queue.h"
 #include "studies/study.h"
 
 namespace earthshine::studies {
@@ -31,6 +31,7 @@ class PatchLooks {
         kept_(kept),
         table_(table),
         incoming_(scene, table, bright, groups, 0, false),
+        shadows_(scene.query),
         groups_(groups),
         sky_parts_(sky_parts) {}
 
@@ -41,7 +42,7 @@ class PatchLooks {
   // Of all looks, in looks.
   [[nodiscard]] double escaped() const { return escaped_; }
   [[nodiscard]] double lost() const { return lost_; }
-  [[nodiscard]] std::uint64_t rays() const { return rays_; }
+  [[nodiscard]] std::uint64_t rays() const { return rays_ + shadows_.rays(); }
 
   // Shadow rays to the source, straight and by mirrors, by so many points of a sequence from the
   // first on. twice: the next look's are the same.
@@ -57,6 +58,12 @@ class PatchLooks {
               const base::SobolOwen4& aims, std::size_t point, std::size_t rays, std::size_t look);
 
  private:
+  struct Arriving {
+    Rgb lx;
+    std::size_t to;  // of the sums by look and group
+    bool twice;      // and to the next look
+  };
+  void take(const Arriving& light, const Rgb& share);
   void add_shadow_ray(const LookingPoint& from, const scenes::LightSample& sample, const Rgb& lx,
                       std::size_t look, std::size_t group, bool twice);
   void aim(const LookingPoint& from, const std::array<float, 4>& u, const raytrace::RayShare& all,
@@ -68,17 +75,12 @@ class PatchLooks {
   const std::vector<double>& kept_;
   const raytrace::RadianceTable& table_;
   raytrace::IncomingLight incoming_;
+  scenes::ShadowQueue<Arriving> shadows_;
   std::size_t groups_, sky_parts_;
   std::vector<Rgb> lamps_, gathered_, sky_;
   std::vector<scenes::LightSample> taken_;
-  scenes::RayPacket packet_;
-  std::size_t count_ = 0;
   double escaped_ = 0.0, lost_ = 0.0;
-  std::uint64_t rays_ = 0;
-  std::array<std::uint32_t, scenes::RayPacket::width> mirror_{};
-  std::array<Rgb, scenes::RayPacket::width> lx_{};
-  std::array<std::size_t, scenes::RayPacket::width> to_{};
-  std::array<bool, scenes::RayPacket::width> twice_{};
+  std::uint64_t rays_ = 0;  // but shadow rays
 };
 
 }  // namespace earthshine::studies
