@@ -2,6 +2,7 @@
 // Where light goes on from a mirror or glass.
 #pragma once
 
+#include "scenes/light_ways.h"
 #include "scenes/ray_query.h"
 #include "scenes/scene.h"
 
@@ -35,5 +36,23 @@ struct SpecularStep {
 };
 [[nodiscard]] SpecularStep specular_step(const Scene& scene, const Hit& hit, const Vec3& direction,
                                          double offset_m, bool aimed = false);
+
+// Mirrors and panes that a ray is followed through at most.
+inline constexpr int most_specular_steps = 64;
+
+// Follows a ray from a hit along specular_step(): visit(hit, direction, step) for that hit, with
+// step 0, and for what is met after each step (a miss, too), until it returns false. straight_only:
+// ends where the ray would turn.
+template <class Visit>
+void follow_specular(const Scene& scene, const RayQuery& query, Hit hit, Vec3 direction,
+                     bool straight_only, const Visit& visit) {
+  for (int step = 0; visit(hit, direction, step); ++step) {
+    const SpecularStep on =
+        specular_step(scene, hit, direction, query.offset_m(hit.triangle), straight_only);
+    if (straight_only && !goes_straight_on(direction, on.direction)) return;
+    direction = on.direction;
+    hit = query.closest(on.origin, direction);
+  }
+}
 
 }  // namespace earthshine::scenes

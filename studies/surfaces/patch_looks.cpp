@@ -13,7 +13,6 @@ namespace {
 
 using scenes::RayPacket;
 
-constexpr int most_specular_steps = 64;
 constexpr std::size_t cosine_rays_each = 8;  // of those that are aimed at bright patches
 
 }  // namespace
@@ -96,56 +95,54 @@ void PatchLooks::gather(const LookingPoint& from, const base::SobolOwen4& sequen
 // does not bend it.
 void PatchLooks::aim(const LookingPoint& from, const std::array<float, 4>& u,
                      const raytrace::RayShare& all, std::size_t look) {
-  Vec3 origin = from.at + from.lift;
   const raytrace::IncomingLight::Aimed aimed =
-      incoming_.aim({origin, from.normal}, double(u[0]), double(u[1]), double(u[2]), all.found_rays,
+      incoming_.aim({from.at + from.lift, from.normal}, double(u[0]), double(u[1]), double(u[2]), all.found_rays,
                     all.aimed_rays);
   double weight = aimed.weight;
-  for (int step = 0; step <= most_specular_steps && weight > 0.0; ++step) {
-    const scenes::Hit hit = scene_.query.closest(origin, aimed.direction);
+  if (weight <= 0.0) return;
+  const auto visit = [&](const scenes::Hit& hit, const Vec3& direction, int step) {
     ++rays_;
-    if (hit.missed()) return;
-    if (incoming_.kept_part(hit, aimed.direction, aimed.share) > 0.0) {
-      return table_.add(hit, Rgb(base::pi * weight), gathered(look));
+    if (hit.missed()) return false;
+    if (incoming_.kept_part(hit, direction, aimed.share) > 0.0) {
+      table_.add(hit, Rgb(base::pi * weight), gathered(look));
+      return false;
     }
     const std::uint32_t m = scene_.scene.triangles[hit.triangle].material;
-    const scenes::Material& material = scene_.scene.materials[m];
-    const scenes::SpecularStep on = scenes::specular_step(
-        scene_.scene, hit, aimed.direction, scene_.query.offset_m(hit.triangle), true);
-    if (!scenes::goes_straight_on(aimed.direction, on.direction)) return;
-    if (hit.front || material.two_sided) weight *= 1.0 - kept_[m];
-    origin = on.origin;
-  }
+    if (hit.front || scene_.scene.materials[m].two_sided) weight *= 1.0 - kept_[m];
+    return weight > 0.0 && step < scenes::most_specular_steps;
+  };
+  const scenes::Hit first = scene_.query.closest(from.at + from.lift, aimed.direction);
+  scenes::follow_specular(scene_.scene, scene_.query, first, aimed.direction, true, visit);
 }
 
 // Reads the surface, and those that mirrors and glass lead on to, as the form factors have it
 // (radiosity/factors/row_caster.cpp).
-void PatchLooks::follow(scenes::Hit hit, Vec3 way, const raytrace::RayShare& share,
-                        std::size_t look) {
+void PatchLooks::follow(const scenes::Hit& first, const Vec3& along,
+                        const raytrace::RayShare& share, std::size_t look) {
   double weight = 1.0 / share.found_rays;
-  bool aimed_come = true;  // to what is met, too
-  for (int step = 0; step <= most_specular_steps; ++step) {
-    if (hit.missed()) return escape(way, weight, look);
+  const auto visit = [&](const scenes::Hit& hit, const Vec3& way, int step) {
+    if (step > 0) ++rays_;
+    if (step > scenes::most_specular_steps) return false;
+    if (hit.missed()) {
+      escape(way, weight, look);
+      return false;
+    }
     const std::uint32_t m = scene_.scene.triangles[hit.triangle].material;
     const bool front = hit.front || scene_.scene.materials[m].two_sided;
     if (front) {
+      const bool aimed_come = scenes::goes_straight_on(along, way);  // to what is met, too
       const double kept = aimed_come ? incoming_.kept_part(hit, way, share) : 1.0;
       table_.add(hit, Rgb(base::pi * weight * kept), gathered(look));
     }
     const bool glass = base::max_component(scene_.scene.materials[m].transmit) > 0.0;
     if (!front && !glass) {
       lost_ += weight;
-      return;
+      return false;
     }
     if (front) weight *= 1.0 - kept_[m];
-    if (weight <= 0.0) return;
-    const scenes::SpecularStep on =
-        scenes::specular_step(scene_.scene, hit, way, scene_.query.offset_m(hit.triangle));
-    aimed_come = aimed_come && scenes::goes_straight_on(way, on.direction);
-    way = on.direction;
-    hit = scene_.query.closest(on.origin, way);
-    ++rays_;
-  }
+    return weight > 0.0;
+  };
+  scenes::follow_specular(scene_.scene, scene_.query, first, along, false, visit);
 }
 
 void PatchLooks::escape(const Vec3& way, double weight, std::size_t look) {

@@ -68,7 +68,8 @@ class PatchLooks {
                       std::size_t look, std::size_t group, bool twice);
   void aim(const LookingPoint& from, const std::array<float, 4>& u, const raytrace::RayShare& all,
            std::size_t look);
-  void follow(scenes::Hit hit, Vec3 way, const raytrace::RayShare& share, std::size_t look);
+  void follow(const scenes::Hit& first, const Vec3& along, const raytrace::RayShare& share,
+              std::size_t look);
   void escape(const Vec3& way, double weight, std::size_t look);
 
   const scenes::World& scene_;
