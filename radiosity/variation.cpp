@@ -137,8 +137,8 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
           const base::SobolOwen4 toward(key.with(2 * k + set));
           for (std::size_t m = 0; m < samples; ++m) {
             const auto u = toward.point2(static_cast<std::uint32_t>(m));
-            take_samples(source, world_.query.ways().mirrors(), from.position, from.normal, u[0],
-                         u[1], taken);
+            take_samples(source, world_.query.specular_paths().mirrors(), from.position,
+                         from.normal, u[0], u[1], taken);
             for (const scenes::LightSample& sample : taken) {
               const double cosine = glm::dot(sample.direction, from.normal);
               const double weight =

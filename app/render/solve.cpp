@@ -19,10 +19,10 @@
 #include "base/error.h"
 #include "base/files/output_file.h"
 #include "radiosity/solution.h"
+#include "raytrace/solve_control/reach_surfaces.h"
 #include "scenes/effects/quality.h"
 #include "scenes/ray_query.h"
 #include "scenes/text/message_text.h"
-#include "studies/steer/reach_surfaces.h"
 
 namespace earthshine::app {
 namespace {
@@ -205,14 +205,14 @@ Solved solve_alone(const SolveCall& call, const Common& common, const LoadedScen
   light.solution = solve_or_read(loaded, query, options, call.solution, times);
   light.solved = true;
   light.surface = times.measure("error", [&] {
-    return studies::surface_error(loaded.world(query), light.solution, options);
+    return raytrace::surface_error(loaded.world(query), light.solution, options);
   });
   const std::optional<double> error = loaded.scene.quality.error;
   if (!error) return light;
   const radiosity::SolveReport& report = light.solution.report;
   const double found = light.surface.parts.total().estimate;
   light.steps.push_back({"solve", report.patches, report.rays_per_patch, 0, *error, found});
-  if (light.surface.known && found > *error) light.limit = studies::Limit::Given;
+  if (light.surface.known && found > *error) light.limit = raytrace::Limit::Given;
   return light;
 }
 
@@ -233,9 +233,10 @@ void run(const SolveCall& call, const Common& common) {
     note(std::string("note: --time-limit has no effect: ") +
          (call.solution.empty() ? "no error is asked for" : "--solution is read as it is"));
   }
-  check_memory(loaded, query,
-               steers ? studies::first_surface_options(loaded.scene, *error, common.seed) : options,
-               nullptr, call.solution.empty());
+  check_memory(
+      loaded, query,
+      steers ? raytrace::first_surface_options(loaded.scene, *error, common.seed) : options,
+      nullptr, call.solution.empty());
   const Solved light = solve_alone(call, common, loaded, query, options, times);
   const radiosity::Solution& solution = light.solution;
   if (!common.quiet) {
@@ -263,7 +264,7 @@ void run(const SolveCall& call, const Common& common) {
     }
     print(text + "\n");
   }
-  if (light.limit == studies::Limit::Stopped) {
+  if (light.limit == raytrace::Limit::Stopped) {
     const std::string& file = call.output.empty() ? call.mesh : call.output;
     throw base::Error(base::Blame::Work, "solve", "interrupted", {},
                       file.empty() ? "" : "What it had come to is in " + file);

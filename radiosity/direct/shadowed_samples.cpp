@@ -31,10 +31,9 @@ class Receiver {
   void add(std::size_t source, int point, const SurfacePoint& from, const LightSample& sample) {
     const double cosine = glm::dot(sample.direction, from.normal);
     if (cosine <= 0.0 || base::max_component(sample.normal_illuminance_lx) <= 0.0) return;
-    shadows_.add(
-        sample, from.position, lifted(from, query_),
-        {source, static_cast<std::size_t>(point), sample.normal_illuminance_lx * cosine},
-        [this](const Arriving& light, const Rgb& share) { take(light, share); });
+    shadows_.add(sample, from.position, lifted(from, query_),
+                 {source, static_cast<std::size_t>(point), sample.normal_illuminance_lx * cosine},
+                 [this](const Arriving& light, const Rgb& share) { take(light, share); });
   }
 
   void finish() {
@@ -129,7 +128,7 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
                        std::span<const Source> sources, std::uint64_t seed, std::uint64_t& rays,
                        base::Hears hears) {
   const std::size_t each = sources.size();
-  const std::span<const scenes::FlatMirror> mirrors = query.ways().mirrors();
+  const std::span<const scenes::FlatMirror> mirrors = query.specular_paths().mirrors();
   Sampled sampled{std::vector<Rgb>(patches.count() * each, Rgb(0.0)),
                   std::vector<double>(patches.count() * each, 0.0)};
   constexpr std::size_t chunk = 256;

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenes/light_ways.h"
 #include "scenes/reflect/specular.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_cells.h"
+#include "scenes/specular_paths.h"
 
 namespace earthshine::raytrace {
 namespace {

@@ -90,7 +90,8 @@ void PathWalker::shine(const Surface& surface, const scenes::Hit& hit) {
   if (sees_sampled_ || !world_.sampled_emitter[number]) {
     see(world_.groups.material[number], scenes::emit_at(world_.scene, material, hit) / pi);
   }
-  if (from_camera_) add(world_.groups.ambient, surface.brdf.diffuse * world_.scene.ambient_radiance);
+  if (from_camera_)
+    add(world_.groups.ambient, surface.brdf.diffuse * world_.scene.ambient_radiance);
   if (surface.reflects()) light_directly(surface);
 }
 
@@ -198,7 +199,7 @@ bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
 // by glass that does not bend it, by flat mirrors once.
 bool PathWalker::shadow_rays_follow(const Surface& surface, bool through) {
   if (through) return scenes::is_straight_glass(surface.material());
-  const scenes::LightWays::Face* face = world_.query.ways().face(surface.triangle);
+  const scenes::SpecularPaths::Face* face = world_.query.specular_paths().face(surface.triangle);
   const bool front = glm::dot(surface.brdf.normal, surface.outward) > 0.0;
   return face != nullptr && face->mirror[front ? 0 : 1] != scenes::no_mirror && ++mirrors_ == 1;
 }

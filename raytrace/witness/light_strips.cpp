@@ -94,7 +94,7 @@ class LightStrips {
       if (!source.is_distant && source.radius_m > tuning::widest * diagonal_m_) continue;
       views_.push_back({&source, nullptr, scenes::no_mirror, source.is_distant, source.middle});
       std::uint32_t number = 0;
-      for (const scenes::FlatMirror& mirror : shared_.query.ways().mirrors()) {
+      for (const scenes::FlatMirror& mirror : shared_.query.specular_paths().mirrors()) {
         const bool reaches = source.is_distant ? glm::dot(source.middle, mirror.normal) > 0.0
                                                : mirror.height_m(source.middle) > 0.0;
         if (reaches) {

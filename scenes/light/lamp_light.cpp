@@ -75,7 +75,7 @@ double relative_intensity(const Lamp& lamp, const Vec3& direction) {
 
 }  // namespace
 
-ShadowWay shadow_way(const LightSample& sample, const Vec3& point, const Vec3& origin) {
+ShadowSegment shadow_segment(const LightSample& sample, const Vec3& point, const Vec3& origin) {
   constexpr double short_of_it = 1e-5;
   if (!std::isfinite(sample.distance_m)) return {sample.direction, sample.distance_m};
   const Vec3 way = point + sample.distance_m * sample.direction + sample.lift_m - origin;

@@ -28,7 +28,7 @@ class ShadowQueue {
   template <class Take>
   void add(const LightSample& sample, const Vec3& point, const Vec3& origin, const Item& item,
            const Take& take, std::size_t order = 0) {
-    const ShadowWay way = shadow_way(sample, point, origin);
+    const ShadowSegment way = shadow_segment(sample, point, origin);
     if (way.reach_m <= 0.0) return;
     waiting_.push_back({origin, way, sample.mirror, order, item});
     if (waiting_.size() == most_) trace(take);
@@ -64,7 +64,7 @@ class ShadowQueue {
  private:
   struct Ray {
     Vec3 origin;
-    ShadowWay way;
+    ShadowSegment way;
     std::uint32_t mirror;
     std::size_t order;
     Item item;

@@ -2,9 +2,9 @@
 // Where light goes on from a mirror or glass.
 #pragma once
 
-#include "scenes/light_ways.h"
 #include "scenes/ray_query.h"
 #include "scenes/scene.h"
+#include "scenes/specular_paths.h"
 
 namespace earthshine::scenes {
 
