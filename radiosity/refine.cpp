@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "radiosity/near_lamps.h"
-#include "radiosity/patches/worst_cuts.h"
+#include "radiosity/patches/refiner.h"
 #include "radiosity/variation.h"
 
 namespace earthshine::radiosity {
@@ -15,18 +16,6 @@ namespace {
 constexpr double share_per_round = 0.5;  // of the squared error, held by the patches that are cut
 constexpr std::size_t growth_between_solves = 4;
 constexpr int fewest_rays = 64;
-
-// The patches to cut in this round: the worst that hold a share of the squared error, fewer where
-// the budget ends before.
-std::vector<Cut> choose(const Patches& patches, const std::vector<Unevenness>& uneven, double total,
-                        std::size_t max_patches) {
-  const std::vector<CutCandidate> candidates = worst_first(patches, uneven);
-  std::size_t count = 0;
-  for (double sum = 0.0; count < candidates.size() && sum < share_per_round * total; ++count) {
-    sum += candidates[count].error;
-  }
-  return cuts_within(patches, candidates, count, max_patches);
-}
 
 // What the rounds of one refinement share.
 class Refinement {
@@ -58,15 +47,20 @@ class Refinement {
  private:
   // The estimated error of the patches as they are.
   double find_errors() {
-    look_at_unknown();
-    total_ = 0.0;
-    for (const Unevenness& u : uneven_) total_ += u.error;
-    return std::sqrt(total_);
+    const std::vector<Unevenness> found = variation_.find(refined_.patches, unknown_, light_);
+    for (std::size_t k = 0; k < unknown_.size(); ++k) refiner_->of(unknown_[k]) = found[k];
+    return std::sqrt(refiner_->total());
   }
 
   // False when nothing was left to cut.
   bool cut_worst(std::size_t max_patches) {
-    if (!cut(choose(refined_.patches, uneven_, total_, max_patches))) return false;
+    const std::vector<Cut> cuts =
+        refiner_->worst(refined_.patches, {0.0, share_per_round, max_patches});
+    if (cuts.empty()) return false;
+    Split made = split(refined_.patches, cuts);
+    if (made.patches.count() == refined_.patches.count()) return false;
+    unknown_ = refiner_->follow(made.patches, made.parent);
+    refined_.patches = std::move(made.patches);
     // Worth its rays only while most of the cuts are still to come.
     const std::size_t count = refined_.patches.count();
     if (count >= growth_between_solves * solution_.patches.count() && 2 * count <= max_patches) {
@@ -81,7 +75,7 @@ class Refinement {
     solution_ = solve(world_, cheap_, patches, variant);
     refined_.rays += solution_.report.form_factor_rays + solution_.report.shadow_rays;
     light_ = relative_light(solution_);
-    uneven_.assign(patches.count(), {});
+    refiner_.emplace(patches);
     unknown_.resize(patches.count());
     std::iota(unknown_.begin(), unknown_.end(), 0U);
   }
@@ -107,27 +101,6 @@ class Refinement {
     return false;
   }
 
-  void look_at_unknown() {
-    const std::vector<Unevenness> found = variation_.find(refined_.patches, unknown_, light_);
-    for (std::size_t k = 0; k < unknown_.size(); ++k) uneven_[unknown_[k]] = found[k];
-  }
-
-  // False when nothing was left to cut.
-  bool cut(const std::vector<Cut>& wanted) {
-    const Patches& before = refined_.patches;
-    Split made = split(before, wanted);
-    if (made.patches.count() == before.count()) return false;
-    std::vector<Unevenness> inherited(made.patches.count());
-    unknown_.clear();
-    for (std::uint32_t i = 0; i < made.patches.count(); ++i) {
-      inherited[i] = uneven_[made.parent[i]];
-      if (made.patches.area_m2[i] < before.area_m2[made.parent[i]]) unknown_.push_back(i);
-    }
-    uneven_ = std::move(inherited);
-    refined_.patches = std::move(made.patches);
-    return true;
-  }
-
   const scenes::World& world_;
   const SolveOptions& options_;
   SolveOptions cheap_;
@@ -135,9 +108,8 @@ class Refinement {
   Variation variation_;
   Solution solution_;  // on the patches of an earlier round
   RelativeLight light_;
-  std::vector<Unevenness> uneven_;      // per patch
-  std::vector<std::uint32_t> unknown_;  // patches not looked at yet
-  double total_ = 0.0;                  // squared error
+  std::optional<Refiner> refiner_;
+  std::vector<std::uint32_t> unknown_;  // patches without an estimate
   Refined refined_;
 };
 

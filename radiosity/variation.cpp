@@ -9,6 +9,7 @@
 #include "base/ranks/ranks.h"
 #include "radiosity/patches/patch_offset.h"
 #include "radiosity/patches/split.h"
+#include "scenes/light/shadow_queue.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_cells.h"
 
@@ -66,45 +67,6 @@ class Looks {
   std::vector<double> sum_;
 };
 
-// Shadow rays of one patch, eight at a time.
-class ShadowQueue {
- public:
-  ShadowQueue(const scenes::RayQuery& query, Looks& looks) : query_(query), looks_(looks) {}
-  void add(const SurfacePoint& from, const scenes::LightSample& sample, const Rgb& value,
-           std::size_t point, std::size_t set, std::size_t group) {
-    const Vec3 origin = lifted(from, query_);
-    const scenes::ShadowWay way = scenes::shadow_way(sample, from.position, origin);
-    if (base::luminance(value) <= 0.0 || way.reach_m <= 0.0) return;
-    query_.set(packet_, count_, origin, way.direction, way.reach_m);
-    mirror_[count_] = sample.mirror;
-    value_[count_] = value;
-    target_[count_] = {point, set, group};
-    if (++count_ == RayPacket::width) flush();
-  }
-  void flush() {
-    if (count_ == 0) return;
-    std::array<Rgb, RayPacket::width> shares;
-    query_.light_shares(packet_, mirror_.data(), count_, shares.data());
-    for (std::size_t k = 0; k < count_; ++k) {
-      const auto [point, set, group] = target_[k];
-      looks_.at(point, set, group) += base::luminance(value_[k] * shares[k]);
-    }
-    rays_ += count_;
-    count_ = 0;
-  }
-  [[nodiscard]] std::uint64_t rays() const { return rays_; }
-
- private:
-  const scenes::RayQuery& query_;
-  Looks& looks_;
-  RayPacket packet_;
-  std::size_t count_ = 0;
-  std::uint64_t rays_ = 0;
-  std::array<std::uint32_t, RayPacket::width> mirror_{};
-  std::array<Rgb, RayPacket::width> value_{};
-  std::array<std::array<std::size_t, 3>, RayPacket::width> target_{};
-};
-
 }  // namespace
 
 RelativeLight relative_light(const Solution& solution) {
@@ -155,7 +117,14 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
   const auto direct = [&](std::uint32_t patch, const Rgb& rho, Looks& looks) {
     const base::Key key(options_.seed, base::Stream::Refinement, identity(patches, patch));
     const base::SobolOwen4 where(key);
-    ShadowQueue queue(world_.query, looks);
+    struct Arriving {
+      Rgb value;
+      std::size_t point, set, group;
+    };
+    scenes::ShadowQueue<Arriving> shadows(world_.query);
+    const auto take = [&](const Arriving& to, const Rgb& share) {
+      looks.at(to.point, to.set, to.group) += base::luminance(to.value * share);
+    };
     std::vector<scenes::LightSample> taken;
     for (std::size_t point = 0; point < looks.points(); ++point) {
       const auto p = where.point2(static_cast<std::uint32_t>(point));
@@ -168,21 +137,23 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
           const base::SobolOwen4 toward(key.with(2 * k + set));
           for (std::size_t m = 0; m < samples; ++m) {
             const auto u = toward.point2(static_cast<std::uint32_t>(m));
-            take_samples(source, world_.query.ways().mirrors(), from.position, from.normal, u[0],
-                         u[1], taken);
+            take_samples(source, world_.query.specular_paths().mirrors(), from.position,
+                         from.normal, u[0], u[1], taken);
             for (const scenes::LightSample& sample : taken) {
               const double cosine = glm::dot(sample.direction, from.normal);
               const double weight =
                   cosine * light.scale[source.group] / static_cast<double>(samples);
-              queue.add(from, sample, weight * rho * sample.normal_illuminance_lx, point, set,
-                        source.group);
+              const Rgb value = weight * rho * sample.normal_illuminance_lx;
+              if (base::luminance(value) <= 0.0) continue;
+              shadows.add(sample, from.position, lifted(from, world_.query),
+                          {value, point, set, source.group}, take);
             }
           }
         }
       }
     }
-    queue.flush();
-    return queue.rays();
+    shadows.trace(take);
+    return shadows.rays();
   };
   const auto indirect = [&](std::uint32_t patch, double rho, Looks& looks) {
     const base::Key key(options_.seed, base::Stream::Refinement, identity(patches, patch));

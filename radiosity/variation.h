@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "radiosity/direct/sources.h"
-#include "radiosity/patches/worst_cuts.h"
+#include "radiosity/patches/refiner.h"
 #include "radiosity/solution.h"
 
 namespace earthshine::radiosity {

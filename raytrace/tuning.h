@@ -152,8 +152,6 @@ inline constexpr double long_path_survival = 0.9999;
 // --- Look-ups in the solution (incoming/) ---
 // Luminance of a bright patch over the mean: less aims more rays (2 takes a third more time).
 inline constexpr double bright_ratio = 16.0;
-// Mirrors and glass that a gather ray follows; as many as rays of the form factors.
-inline constexpr int most_specular_steps = 64;
 
 // --- Lights (light/) ---
 // Lamps up to which all get shadow rays: choosing among fewer costs more than it saves.

@@ -9,7 +9,7 @@
 
 #include "base/free_memory.h"
 #include "scenes/ray_structure.h"
-#include "scenes/source_way.h"
+#include "scenes/shadow_path.h"
 #include "scenes/triangle_point.h"
 
 namespace earthshine::scenes {
@@ -108,7 +108,7 @@ constexpr double least_fall = 1e-6;
 RayQuery::RayQuery(const Scene& source)
     : embree_(std::make_unique<Embree>()),
       offsets_(source),
-      ways_(source, offsets_),
+      specular_paths_(source, offsets_),
       coincident_(source) {
   embree_->device = rtcNewDevice(nullptr);
   if (embree_->device == nullptr) Embree::fail("Embree could not start");
@@ -136,7 +136,7 @@ RayQuery::RayQuery(const Scene& source)
     for (const Vec3& vertex : source.vertices) bounds_.add(vertex - centre());
     far_m_ = far_extents * glm::length(glm::max(-bounds_.low, bounds_.high));
     embree_->masks = OpacityMasks(source);
-    embree_->any_ways = !ways_.empty();
+    embree_->any_specular_paths = !specular_paths_.empty();
     embree_->add_triangles(embree_->scene, source, 0, own_triangles, 0, own_vertices, centre());
     embree_->add_instances(source, centre());
   }
@@ -262,14 +262,14 @@ void RayQuery::light_shares(const RayPacket& rays, const std::uint32_t* mirrors,
   RTCRay8 query;
   fill(rays, query);
   ShadowContext context;
-  context.ways = ways_.empty() ? nullptr : &ways_;
+  context.specular_paths = specular_paths_.empty() ? nullptr : &specular_paths_;
   std::array<Vec3, RayPacket::width> origin, direction;
-  for (std::size_t k = 0; k < count && context.ways != nullptr; ++k) {
+  for (std::size_t k = 0; k < count && context.specular_paths != nullptr; ++k) {
     origin[k] = centre() + Vec3(rays.origin_x[k], rays.origin_y[k], rays.origin_z[k]);
     direction[k] = Vec3(rays.direction_x[k], rays.direction_y[k], rays.direction_z[k]);
     if (mirrors[k] == no_mirror) continue;
     // Only what is before the mirror stands in the way.
-    const FlatMirror& mirror = ways_.mirrors()[mirrors[k]];
+    const FlatMirror& mirror = specular_paths_.mirrors()[mirrors[k]];
     const double fall = -glm::dot(direction[k], mirror.normal);
     const double to_mirror =
         (mirror.height_m(origin[k]) - 2.0 * mirror.offset_m) / std::max(fall, 1e-12);
@@ -278,13 +278,13 @@ void RayQuery::light_shares(const RayPacket& rays, const std::uint32_t* mirrors,
   occluded8(valid_lanes[count].data(), embree_->scene, query, context);
   const std::uint32_t hidden = hidden_bits(query, count);
   for (std::size_t k = 0; k < count; ++k) {
-    const bool turns = context.ways != nullptr && mirrors[k] != no_mirror;
+    const bool turns = context.specular_paths != nullptr && mirrors[k] != no_mirror;
     if (((hidden >> k) & 1U) != 0) {
       shares[k] = Rgb(0.0);
     } else if (!turns && ((context.met >> k) & 1U) == 0) {
       shares[k] = Rgb(1.0);
     } else {
-      shares[k] = SourceWay(*this, origin[k], direction[k], double(rays.t_max[k]), mirrors[k])
+      shares[k] = ShadowPath(*this, origin[k], direction[k], double(rays.t_max[k]), mirrors[k])
                       .follow(closest(origin[k], direction[k]));
     }
   }

@@ -10,8 +10,8 @@
 #include <memory>
 
 #include "scenes/coincident_faces.h"
-#include "scenes/light_ways.h"
 #include "scenes/scene.h"
+#include "scenes/specular_paths.h"
 #include "scenes/surface_offset.h"
 
 namespace earthshine::scenes {
@@ -83,11 +83,11 @@ class RayQuery {
   [[nodiscard]] std::uint32_t occluded(const RayPacket& rays, std::size_t count) const;
 
   // Shadow rays, from a surface toward a source at t_max: of its light, the share that arrives.
-  // mirrors: per ray the flat mirror of ways() that the light comes by, t_max the whole way; or
+  // mirrors: per ray the flat mirror of specular_paths() that the light comes by, t_max the whole way; or
   // no_mirror. Glass that does not bend light lets its share through, all else casts a shadow.
   void light_shares(const RayPacket& rays, const std::uint32_t* mirrors, std::size_t count,
                     Rgb* shares) const;
-  [[nodiscard]] const LightWays& ways() const { return ways_; }
+  [[nodiscard]] const SpecularPaths& specular_paths() const { return specular_paths_; }
   [[nodiscard]] const CoincidentFaces& coincident() const { return coincident_; }
 
   // How far off a triangle, along its normal, rays start that leave it, m.
@@ -119,7 +119,7 @@ class RayQuery {
 
   std::unique_ptr<Embree> embree_;
   SurfaceOffsets offsets_;
-  LightWays ways_;
+  SpecularPaths specular_paths_;
   CoincidentFaces coincident_;
   Box bounds_;  // about the centre
   double far_m_ = 0.0;

@@ -37,7 +37,8 @@ void RayQuery::Embree::pass_shadow(const RTCFilterFunctionNArguments* found) {
     if (found->valid[k] != -1) continue;
     const std::uint32_t triangle = embree.triangle_of(found, k);
     const bool hole = embree.is_hole(found, k, triangle);
-    const bool way = shadow.ways != nullptr && shadow.ways->face(triangle) != nullptr;
+    const bool way =
+        shadow.specular_paths != nullptr && shadow.specular_paths->face(triangle) != nullptr;
     if (!hole && way) shadow.met |= 1U << RTCRayN_id(found->ray, found->N, k);
     if (hole || way) found->valid[k] = 0;
   }
@@ -72,7 +73,8 @@ void RayQuery::Embree::add_triangles(RTCScene to, const Scene& source, std::size
   rtcSetGeometryMask(geometry, all_rays);  // Embree 4 would default to 1
   rtcSetGeometryUserData(geometry, this);
   if (!masks.empty()) rtcSetGeometryIntersectFilterFunction(geometry, pass_holes);
-  if (!masks.empty() || any_ways) rtcSetGeometryOccludedFilterFunction(geometry, pass_shadow);
+  if (!masks.empty() || any_specular_paths)
+    rtcSetGeometryOccludedFilterFunction(geometry, pass_shadow);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(to, geometry);
   rtcReleaseGeometry(geometry);

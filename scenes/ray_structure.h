@@ -31,17 +31,17 @@ using EmbreeContext = RTCRayQueryContext;
 using EmbreeContext = RTCIntersectContext;
 #endif
 
-// Of shadow rays: what goes on from `ways` stops none of them, but is reported.
+// Of shadow rays: what goes on from `specular_paths` stops none of them, but is reported.
 struct ShadowContext : EmbreeContext {
-  const LightWays* ways = nullptr;  // null: all surfaces stop rays
-  std::uint32_t met = 0;            // bit k: ray k met one that does not
+  const SpecularPaths* specular_paths = nullptr;  // null: all surfaces stop rays
+  std::uint32_t met = 0;                          // bit k: ray k met one that does not
 };
 
 struct RayQuery::Embree {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   OpacityMasks masks;
-  bool any_ways = false;  // some faces let shadow rays go on
+  bool any_specular_paths = false;  // some faces let shadow rays go on
   // Instances have the structure of their original's triangles, once; by the number of their
   // geometry in the scene, of which the first is that of all other triangles.
   struct Placed {

@@ -13,12 +13,12 @@
 #include "app/parts/part.h"
 #include "base/files/png_file.h"
 #include "radiosity/solution.h"
+#include "raytrace/error_budget.h"
 #include "raytrace/render.h"
+#include "raytrace/solve_control/wanted_error.h"
 #include "scenes/effects/culling.h"
 #include "scenes/ray_query.h"
 #include "scenes/scene.h"
-#include "studies/error/error_budget.h"
-#include "studies/steer/wanted_error.h"
 
 namespace earthshine::app {
 
@@ -117,12 +117,12 @@ struct Solved {
   radiosity::Solution solution;
   radiosity::SolveOptions solver;
   bool solved = false;
-  bool broken_off = false;        // by a stop or the time limit: there is no solution
-  studies::SurfaceError surface;  // where the solution is what is asked for
+  bool broken_off = false;         // by a stop or the time limit: there is no solution
+  raytrace::SurfaceError surface;  // where the solution is what is asked for
   // Where an error was asked for: how it was reached.
   bool steered = false;
-  std::vector<studies::Step> steps;
-  studies::Limit limit = studies::Limit::None;
+  std::vector<raytrace::Step> steps;
+  raytrace::Limit limit = raytrace::Limit::None;
 };
 
 class RenderParts;
@@ -155,7 +155,7 @@ struct PictureFiles {
 struct Picture {
   Json report;
   bool whole = true;
-  studies::Limit limit = studies::Limit::None;  // what kept it from the wanted error
+  raytrace::Limit limit = raytrace::Limit::None;  // what kept it from the wanted error
   raytrace::RenderReport rendered;
   std::optional<double> white_cd_per_m2 = {};  // of its PNG, with --exposure
   StageTimes times;                            // of the whole call so far and of this picture

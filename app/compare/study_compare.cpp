@@ -15,10 +15,10 @@
 #include "base/files/png_file.h"
 #include "base/tone.h"
 #include "raytrace/light/distributed_area.h"
+#include "raytrace/solve_control/wanted_error.h"
 #include "scenes/effects/quality.h"
 #include "studies/compare/compare.h"
 #include "studies/compare/yardstick.h"
-#include "studies/steer/wanted_error.h"
 
 namespace earthshine::app {
 namespace {
@@ -135,7 +135,7 @@ void run(const CompareCall& call, const Common& common) {
   options.distributed_lights = call.lights;
   options.distributed_over = call.area;
   options.error = loaded.scene.quality.error.value_or(0.0);
-  options.solver = studies::picture_solver(loaded.scene, loaded.scene.quality, common.seed);
+  options.solver = raytrace::picture_solver(loaded.scene, loaded.scene.quality, common.seed);
   options.seed = common.seed;
   const scenes::RayQuery query = ray_query(loaded, {{&camera}}, common.quiet, true);
   const studies::Comparison comparison =

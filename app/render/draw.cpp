@@ -30,18 +30,18 @@ bool as_set(const raytrace::RenderOptions& options) {
   return !options.shared.on || options.indirect == raytrace::Indirect::Paths;
 }
 
-studies::Limit limit_of(const Drawn& drawn, double wanted) {
+raytrace::Limit limit_of(const Drawn& drawn, double wanted) {
   const bool explained = drawn.frame.report.unexplained_pixels == 0;
   if (explained && (drawn.errors.pixels == 0 || drawn.errors.total.estimate <= wanted)) {
-    return studies::Limit::None;
+    return raytrace::Limit::None;
   }
-  if (drawn.frame.report.stopped) return studies::Limit::Stopped;
+  if (drawn.frame.report.stopped) return raytrace::Limit::Stopped;
   const double most_s = drawn.options.time_limit_s;
   if (as_set(drawn.options) && (most_s <= 0.0 || drawn.frame.report.seconds < most_s)) {
-    return studies::Limit::Settings;
+    return raytrace::Limit::Settings;
   }
   const bool endless = most_s <= 0.0 || drawn.frame.report.gave_up;
-  return endless ? studies::Limit::Steps : studies::Limit::Time;
+  return endless ? raytrace::Limit::Steps : raytrace::Limit::Time;
 }
 
 constexpr int probe_rays = 16384;
@@ -72,10 +72,10 @@ Drawn draw_picture(const Studio& studio, const scenes::Camera& camera, StageTime
                                    : draw_frame(studio, camera, options);
   });
   if (studio.call.no_error) {
-    drawn.errors.not_captured = studies::not_captured(studio.scene(), options);
+    drawn.errors.not_captured = raytrace::not_captured(studio.scene(), options);
     return drawn;
   }
-  drawn.errors = studies::error_budget(studio.scene(), {&camera, options}, drawn.frame);
+  drawn.errors = raytrace::error_budget(studio.scene(), {&camera, options}, drawn.frame);
   if (const std::size_t pixels = drawn.frame.report.unexplained_pixels; pixels > 0) {
     drawn.errors.not_captured.push_back(
         fmt::format("light in {} pixels that sources send there and no sample found; the error "
@@ -85,21 +85,21 @@ Drawn draw_picture(const Studio& studio, const scenes::Camera& camera, StageTime
   if (!loaded.scene.quality.error) return drawn;
   const double wanted = *loaded.scene.quality.error;
   drawn.limit = limit_of(drawn, wanted);
-  if (drawn.limit != studies::Limit::None) {
+  if (drawn.limit != raytrace::Limit::None) {
     const double ratio = drawn.errors.total.estimate / wanted;
     const double growth =
         as_set(options) ? ratio * ratio : studies::samples_growth(drawn.frame.report, wanted);
     drawn.seconds_to_go = drawn.frame.report.seconds * (growth - 1.0);
   }
   if (studio.light.solved) {
-    studies::Step solve;
+    raytrace::Step solve;
     solve.stage = "solve";
     solve.patches = studio.light.solution.report.patches;
     solve.form_factor_rays = studio.light.solution.report.rays_per_patch;
     solve.asked = wanted;
     drawn.steps.push_back(solve);
   }
-  studies::Step picture;
+  raytrace::Step picture;
   picture.stage = "picture";
   picture.gather_rays = drawn.frame.report.gather_rays;
   picture.asked = wanted;

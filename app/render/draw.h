@@ -11,9 +11,9 @@ namespace earthshine::app {
 struct Drawn {
   raytrace::Frame frame;
   raytrace::RenderOptions options;  // that it was drawn with
-  studies::ErrorBudget errors;
-  std::vector<studies::Step> steps;  // with an error to reach: of the solution, then the picture's
-  studies::Limit limit = studies::Limit::None;
+  raytrace::ErrorBudget errors;
+  std::vector<raytrace::Step> steps;  // with an error to reach: of the solution, then the picture's
+  raytrace::Limit limit = raytrace::Limit::None;
   double seconds_to_go = 0.0;  // about, until the wanted error, if it was not reached
 };
 // Rays alone, without a statement of what they are worth.

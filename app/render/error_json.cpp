@@ -9,38 +9,38 @@
 namespace earthshine::app {
 namespace {
 
-using studies::ErrorEstimate;
+using raytrace::ErrorEstimate;
 
 struct NamedPart {
   const char* name;
   const char* words;
-  ErrorEstimate part;
+  raytrace::ErrorEstimate part;
 };
 using Parts = std::vector<NamedPart>;
 
-Parts parts_of(const studies::ErrorParts& parts) {
+Parts parts_of(const raytrace::ErrorParts& parts) {
   return {{"gather_noise", "gather", parts.gather},
           {"interreflection", "interreflection", parts.interreflection},
           {"lobes", "lobes", parts.lobes},
           {"camera_samples", "camera samples", parts.camera_samples}};
 }
-Parts parts_of(const studies::SolutionError& parts) {
+Parts parts_of(const raytrace::SolutionError& parts) {
   return {{"form_factor_noise", "form factors", parts.form_factors},
           {"patch_size", "patches", parts.patches},
           {"solver_residual", "solver", parts.solver},
           {"lamp_sampling", "lamps", parts.lamps}};
 }
 
-Json json_of(const ErrorEstimate& error) {
+Json json_of(const raytrace::ErrorEstimate& error) {
   return {{"estimate", error.estimate}, {"bound_95", error.bound_95}};
 }
 
 // Null where nothing is seen that could be wrong.
-Json json_of(const ErrorEstimate& error, bool known) {
+Json json_of(const raytrace::ErrorEstimate& error, bool known) {
   return known ? json_of(error) : Json{{"estimate", nullptr}, {"bound_95", nullptr}};
 }
 
-Json json_of(const studies::TargetError& target) {
+Json json_of(const raytrace::TargetError& target) {
   Json json = json_of(target.error, target.luminance > 0.0 || target.error.estimate > 0.0);
   json["name"] = target.name;
   json["pixels"] = target.pixels;
@@ -48,7 +48,7 @@ Json json_of(const studies::TargetError& target) {
   return json;
 }
 
-Json json_of(const ErrorEstimate& total, bool known, const Parts& parts,
+Json json_of(const raytrace::ErrorEstimate& total, bool known, const Parts& parts,
              std::optional<double> wanted, const std::vector<std::string>& not_captured) {
   Json json = json_of(total, known);
   json["wanted"] = to_json(wanted);
@@ -59,7 +59,7 @@ Json json_of(const ErrorEstimate& total, bool known, const Parts& parts,
 }
 
 // why_unknown: where none is known.
-std::string text_of(const ErrorEstimate& total, bool known, const char* why_unknown,
+std::string text_of(const raytrace::ErrorEstimate& total, bool known, const char* why_unknown,
                     const Parts& parts, const std::vector<std::string>& not_captured) {
   std::string text = fmt::format("no error can be told: {}", why_unknown);
   if (known) {
@@ -75,35 +75,35 @@ std::string text_of(const ErrorEstimate& total, bool known, const char* why_unkn
   return text;
 }
 
-const char* words_of(studies::Limit limit) {
+const char* words_of(raytrace::Limit limit) {
   switch (limit) {
-    case studies::Limit::None:
+    case raytrace::Limit::None:
       return "";
-    case studies::Limit::Time:
+    case raytrace::Limit::Time:
       return "--time-limit came first";
-    case studies::Limit::Memory:
+    case raytrace::Limit::Memory:
       return "memory came first (--max-memory, or what is free)";
-    case studies::Limit::Settings:
+    case raytrace::Limit::Settings:
       return "quality.max_patches, quality.form_factor_rays with quality.patch_edge (or refine = "
              "false) is given, which wins over it, or a picture has as many quality.gather_rays as "
              "are set (gather = \"per-sample\", --indirect paths); leave it out, or raise these";
-    case studies::Limit::Steps:
+    case raytrace::Limit::Steps:
       return "no end in sight after several tries";
-    case studies::Limit::Stopped:
+    case raytrace::Limit::Stopped:
       return "it was stopped";
-    case studies::Limit::Ledger:
+    case raytrace::Limit::Ledger:
       return "the ledger lacks light that no ray finds again, as on a spot beside a lamp that "
              "mirrors alone show; move such a lamp off the surface";
-    case studies::Limit::Given:
+    case raytrace::Limit::Given:
       return "the solution of --solution is taken as it is; leave it out to solve anew";
   }
   return "";
 }
 
-void add_steps(Json& json, studies::Limit limit, const std::vector<studies::Step>& steps) {
-  json["limit"] = limit == studies::Limit::None ? Json() : Json(studies::limit_name(limit));
+void add_steps(Json& json, raytrace::Limit limit, const std::vector<raytrace::Step>& steps) {
+  json["limit"] = limit == raytrace::Limit::None ? Json() : Json(raytrace::limit_name(limit));
   json["steps"] = Json::array();
-  for (const studies::Step& step : steps) {
+  for (const raytrace::Step& step : steps) {
     Json one = {{"stage", step.stage}};
     if (step.patches > 0) {
       one["patches"] = step.patches;
@@ -117,11 +117,11 @@ void add_steps(Json& json, studies::Limit limit, const std::vector<studies::Step
 }
 
 // What was chosen to reach the error, or why it is not reached.
-std::string choice_text(studies::Limit limit, const std::vector<studies::Step>& steps,
+std::string choice_text(raytrace::Limit limit, const std::vector<raytrace::Step>& steps,
                         std::optional<double> wanted, double seconds_to_go) {
   if (!wanted || steps.empty()) return "";
   std::string text;
-  for (const studies::Step& step : steps) {
+  for (const raytrace::Step& step : steps) {
     text += fmt::format("\n  {}:", step.stage);
     if (step.patches > 0) {
       text += fmt::format(" {} patches, {} rays each,", step.patches, step.form_factor_rays);
@@ -130,7 +130,7 @@ std::string choice_text(studies::Limit limit, const std::vector<studies::Step>& 
     if (step.estimate > 0.0) text += fmt::format(" leaves {},", scenes::percent(step.estimate));
     text.pop_back();
   }
-  if (limit != studies::Limit::None) {
+  if (limit != raytrace::Limit::None) {
     text += fmt::format("\n  the wanted {} is not reached: {}", scenes::percent(*wanted),
                         words_of(limit));
   }
@@ -140,7 +140,7 @@ std::string choice_text(studies::Limit limit, const std::vector<studies::Step>& 
   return text;
 }
 
-std::string weights_text(const studies::SurfaceError& error) {
+std::string weights_text(const raytrace::SurfaceError& error) {
   return fmt::format(
       "\n  weighted as in pictures: above four times the mean in proportion, over spots of 1/256 "
       "of "
@@ -151,7 +151,7 @@ std::string weights_text(const studies::SurfaceError& error) {
 }  // namespace
 
 Json error_json(const Drawn& drawn, std::optional<double> wanted) {
-  const studies::ErrorBudget& budget = drawn.errors;
+  const raytrace::ErrorBudget& budget = drawn.errors;
   Json json =
       json_of(budget.total, budget.pixels > 0, parts_of(budget.parts), wanted, budget.not_captured);
   add_steps(json, drawn.limit, drawn.steps);
@@ -162,7 +162,7 @@ Json error_json(const Drawn& drawn, std::optional<double> wanted) {
 }
 
 Json error_json(const Solved& light, std::optional<double> wanted) {
-  const studies::SurfaceError& error = light.surface;
+  const raytrace::SurfaceError& error = light.surface;
   Json json =
       json_of(error.parts.total(), error.known, parts_of(error.parts), wanted, error.not_captured);
   json["unweighted"] = error.known ? Json(error.unweighted) : Json();
@@ -171,25 +171,25 @@ Json error_json(const Solved& light, std::optional<double> wanted) {
 }
 
 void add_errors(base::ExrHeader& header, const Drawn& drawn) {
-  const studies::ErrorBudget& budget = drawn.errors;
+  const raytrace::ErrorBudget& budget = drawn.errors;
   const auto number = [&](const std::string& name, double value) {
     header.numbers.emplace_back("earthshine:error." + name, static_cast<float>(value));
   };
   if (budget.pixels > 0) {
-    const ErrorEstimate total = budget.total;
+    const raytrace::ErrorEstimate total = budget.total;
     number("estimate", total.estimate);
     number("bound_95", total.bound_95);
     for (const NamedPart& part : parts_of(budget.parts)) number(part.name, part.part.estimate);
   }
   header.text.emplace_back("earthshine:error.not_captured",
                            fmt::format("{}", fmt::join(budget.not_captured, "; ")));
-  if (drawn.limit != studies::Limit::None) {
-    header.text.emplace_back("earthshine:error.limit", studies::limit_name(drawn.limit));
+  if (drawn.limit != raytrace::Limit::None) {
+    header.text.emplace_back("earthshine:error.limit", raytrace::limit_name(drawn.limit));
   }
 }
 
 std::string error_text(const Drawn& drawn, std::optional<double> wanted) {
-  const studies::ErrorBudget& budget = drawn.errors;
+  const raytrace::ErrorBudget& budget = drawn.errors;
   return text_of(budget.total, budget.pixels > 0, "no pixel shows reflected light alone",
                  parts_of(budget.parts), budget.not_captured) +
          (budget.pixels > 0 ? choice_text(drawn.limit, drawn.steps, wanted, drawn.seconds_to_go)
@@ -197,8 +197,8 @@ std::string error_text(const Drawn& drawn, std::optional<double> wanted) {
 }
 
 std::string error_text(const Solved& light, std::optional<double> wanted) {
-  const studies::SurfaceError& error = light.surface;
-  if (!error.known && light.limit == studies::Limit::Stopped) {
+  const raytrace::SurfaceError& error = light.surface;
+  if (!error.known && light.limit == raytrace::Limit::Stopped) {
     return "no error is known: it was stopped before one was looked for";
   }
   return text_of(error.parts.total(), error.known, "no surface reflects light",
@@ -208,16 +208,17 @@ std::string error_text(const Solved& light, std::optional<double> wanted) {
 }
 
 double seconds_to_go(const Solved& light, std::optional<double> wanted, double seconds) {
-  using studies::Limit;
-  const bool more_helps = light.limit == Limit::Time || light.limit == Limit::Memory ||
-                          light.limit == Limit::Steps || light.limit == Limit::Stopped;
+  using raytrace::Limit;
+  const bool more_helps =
+      light.limit == raytrace::Limit::Time || light.limit == raytrace::Limit::Memory ||
+      light.limit == raytrace::Limit::Steps || light.limit == raytrace::Limit::Stopped;
   if (!wanted || !more_helps || light.steps.empty()) return 0.0;
   const double over = light.steps.back().estimate / *wanted;
   return std::max(0.0, seconds * (over * over - 1.0));
 }
 
-void check_reached(const SceneInput& call, studies::Limit limit, double wanted) {
-  if (!call.wants_error() || limit == studies::Limit::None) return;
+void check_reached(const SceneInput& call, raytrace::Limit limit, double wanted) {
+  if (!call.wants_error() || limit == raytrace::Limit::None) return;
   throw StoppedShort(fmt::format("{}: the wanted error of {} is not reached: {}", call.path,
                                  scenes::percent(wanted), words_of(limit)));
 }

@@ -8,8 +8,8 @@
 #include "app/command.h"
 #include "app/render/draw.h"
 #include "base/files/exr_file.h"
-#include "studies/error/error_budget.h"
-#include "studies/surfaces/surface_error.h"
+#include "raytrace/error_budget.h"
+#include "raytrace/surfaces/surface_error.h"
 
 namespace earthshine::app {
 
@@ -32,6 +32,6 @@ void add_errors(base::ExrHeader& header, const Drawn& drawn);
                                    double seconds);
 
 // Throws StoppedShort where the call wants an error that a limit has kept it from.
-void check_reached(const SceneInput& call, studies::Limit limit, double wanted);
+void check_reached(const SceneInput& call, raytrace::Limit limit, double wanted);
 
 }  // namespace earthshine::app

@@ -13,8 +13,8 @@
 #include "base/files/output_file.h"
 #include "base/parallel.h"
 #include "radiosity/store/solution_mesh.h"
-#include "studies/steer/reach_surfaces.h"
-#include "studies/steer/wanted_error.h"
+#include "raytrace/solve_control/reach_surfaces.h"
+#include "raytrace/solve_control/wanted_error.h"
 
 namespace earthshine::app {
 namespace {
@@ -51,7 +51,7 @@ Solved solve_within(const LightCall& wanted, double seconds, StageTimes& times) 
   const auto solve = [&](double error) {
     quality.error = error;
     return solve_in_time(
-        wanted, studies::picture_solver(wanted.loaded.scene, quality, wanted.common.seed), times);
+        wanted, raytrace::picture_solver(wanted.loaded.scene, quality, wanted.common.seed), times);
   };
   const double before = times.total();
   Solved light = solve(std::max(coarse, finest));
@@ -97,7 +97,7 @@ radiosity::SolveOptions solver_of(const RenderCall& call, const scenes::Scene& s
                                   const Common& common) {
   // A solution that is read keeps to the settings that it was made with.
   if (!call.solution.empty() || !steers(call, scene)) return solve_options(scene, common);
-  return studies::picture_solver(scene, scene.quality, common.seed);
+  return raytrace::picture_solver(scene, scene.quality, common.seed);
 }
 
 Solved solve_as_exactly(const ExactCall& call, StageTimes& times) {
@@ -105,15 +105,15 @@ Solved solve_as_exactly(const ExactCall& call, StageTimes& times) {
   const scenes::World scene = loaded.world(call.query);
   const auto start = std::chrono::steady_clock::now();
   double in_stages = 0.0;
-  studies::Wanted wanted = wanted_error(loaded, call.common, call.time_limit_s, times);
+  raytrace::Wanted wanted = wanted_error(loaded, call.common, call.time_limit_s, times);
   wanted.stop = Interrupt::asked;
   std::optional<Interrupt> interrupt;  // before the first solve is done nothing could be kept
-  const studies::SolveListener listen = [&](const radiosity::SolveReport& report) {
+  const raytrace::SolveListener listen = [&](const radiosity::SolveReport& report) {
     if (!interrupt) interrupt.emplace();
     times.add(report.seconds);
     for (const auto& [stage, seconds] : report.seconds) in_stages += seconds;
   };
-  studies::SteeredSolution found = studies::reach_surfaces(
+  raytrace::SteeredSolution found = raytrace::reach_surfaces(
       scene, wanted, call.common.seed, listen, [&](const std::string& stage) -> raytrace::Progress {
         const auto bar = std::make_shared<Progress>(stage, call.common.quiet);
         return [bar](std::size_t done, std::size_t total) { (*bar)(done, total); };
@@ -145,9 +145,9 @@ void want_usual_error(const RenderCall& call, scenes::Scene& scene) {
   if (!is_said) scene.quality.error = usual_error;
 }
 
-studies::Wanted wanted_error(const LoadedScene& loaded, const Common& common, double time_limit_s,
-                             const StageTimes& times) {
-  studies::Wanted wanted;
+raytrace::Wanted wanted_error(const LoadedScene& loaded, const Common& common, double time_limit_s,
+                              const StageTimes& times) {
+  raytrace::Wanted wanted;
   wanted.error = loaded.scene.quality.error.value_or(wanted.error);
   wanted.seconds = time_limit_s;
   const double before = times.total();

@@ -52,8 +52,8 @@ void want_usual_error(const RenderCall& call, scenes::Scene& scene);
 
 // The wish of --error, with the limits of the call; what --max-memory or the machine has is asked
 // for each number of patches.
-[[nodiscard]] studies::Wanted wanted_error(const LoadedScene& loaded, const Common& common,
-                                           double time_limit_s, const StageTimes& times);
+[[nodiscard]] raytrace::Wanted wanted_error(const LoadedScene& loaded, const Common& common,
+                                            double time_limit_s, const StageTimes& times);
 
 // Names light groups whose flux is not where samples found it, by more than a millionth.
 void note_lost_flux(const radiosity::SolveReport& report);

@@ -19,10 +19,10 @@
 #include "base/error.h"
 #include "base/files/output_file.h"
 #include "radiosity/solution.h"
+#include "raytrace/solve_control/reach_surfaces.h"
 #include "scenes/effects/quality.h"
 #include "scenes/ray_query.h"
 #include "scenes/text/message_text.h"
-#include "studies/steer/reach_surfaces.h"
 
 namespace earthshine::app {
 namespace {
@@ -204,7 +204,7 @@ Solved solve_alone(const ExactCall& call, const std::string& file, StageTimes& t
   const radiosity::SolveOptions options = solve_options(loaded.scene, call.common);
   const bool steered = file.empty() && loaded.scene.quality.error;
   check_memory(loaded, call.query,
-               steered ? studies::first_surface_options(loaded.scene, *loaded.scene.quality.error,
+               steered ? raytrace::first_surface_options(loaded.scene, *loaded.scene.quality.error,
                                                         call.common.seed)
                        : options,
                nullptr, file.empty());
@@ -214,14 +214,14 @@ Solved solve_alone(const ExactCall& call, const std::string& file, StageTimes& t
   light.solution = solve_or_read(loaded, call.query, options, file, times);
   light.solved = true;
   light.surface = times.measure("error", [&] {
-    return studies::surface_error(loaded.world(call.query), light.solution, options);
+    return raytrace::surface_error(loaded.world(call.query), light.solution, options);
   });
   const std::optional<double> error = loaded.scene.quality.error;
   if (!error) return light;
   const radiosity::SolveReport& report = light.solution.report;
   const double found = light.surface.parts.total().estimate;
   light.steps.push_back({"solve", report.patches, report.rays_per_patch, 0, *error, found});
-  if (light.surface.known && found > *error) light.limit = studies::Limit::Given;
+  if (light.surface.known && found > *error) light.limit = raytrace::Limit::Given;
   return light;
 }
 
@@ -272,7 +272,7 @@ void run(const SolveCall& call, const Common& common) {
     }
     print(text + "\n");
   }
-  if (light.limit == studies::Limit::Stopped) {
+  if (light.limit == raytrace::Limit::Stopped) {
     const std::string& file = call.output.empty() ? call.mesh : call.output;
     throw base::Error(base::Blame::Work, "solve", "interrupted", {},
                       file.empty() ? "" : "What it had come to is in " + file);

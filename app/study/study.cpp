@@ -89,7 +89,7 @@ studies::StudyFile study_of(const StudyCall& call, const std::vector<std::string
   return study;
 }
 
-studies::StageListener progress_of_stages(const Common& common) {
+raytrace::StageListener progress_of_stages(const Common& common) {
   return [quiet = common.quiet](const std::string& stage) -> raytrace::Progress {
     const auto progress = std::make_shared<Progress>(stage, quiet);
     return [progress](std::size_t done, std::size_t total) { (*progress)(done, total); };

@@ -8,8 +8,8 @@
 
 #include "app/command.h"
 #include "app/parts/part.h"
+#include "raytrace/render.h"
 #include "studies/orbit/study_file.h"
-#include "studies/study.h"
 
 namespace earthshine::app {
 
@@ -46,6 +46,6 @@ void add_wanted_options(CLI::App& command, std::vector<std::string>& wanted,
 [[nodiscard]] Command add_study_visibility(CLI::App& study);
 
 // A progress line per stage of a study.
-[[nodiscard]] studies::StageListener progress_of_stages(const Common& common);
+[[nodiscard]] raytrace::StageListener progress_of_stages(const Common& common);
 
 }  // namespace earthshine::app

@@ -16,9 +16,9 @@
 #include "base/free_memory.h"
 #include "radiosity/refine.h"
 #include "raytrace/frame/first_hit.h"
+#include "raytrace/solve_control/wanted_error.h"
 #include "scenes/effects/quality.h"
 #include "scenes/sky/sky_cells.h"
-#include "studies/steer/wanted_error.h"
 #include "studies/targets/target_view.h"
 
 namespace earthshine::app {
@@ -99,7 +99,7 @@ radiosity::SolveOptions study_solver(const scenes::Scene& scene, const Common& c
   constexpr double enough = 1e-4;
   scenes::Quality quality = scene.quality;
   if (!quality.error) quality.error = scenes::default_error;
-  radiosity::SolveOptions solver = studies::picture_solver(scene, quality, common.seed);
+  radiosity::SolveOptions solver = raytrace::picture_solver(scene, quality, common.seed);
   if (!scene.quality.solver_tolerance) solver.tolerance = enough;
   return solver;
 }

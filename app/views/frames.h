@@ -9,9 +9,9 @@
 #include "app/views/scene.h"
 #include "base/image.h"
 #include "radiosity/store/solution_file.h"
+#include "raytrace/render.h"
 #include "studies/orbit/condition_noise.h"
 #include "studies/sight/sight.h"
-#include "studies/study.h"
 
 namespace earthshine::app {
 

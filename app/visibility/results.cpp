@@ -10,9 +10,9 @@
 #include "app/study/results.h"
 #include "app/study/words.h"
 #include "base/error.h"
+#include "raytrace/error_budget.h"
 #include "scenes/sky/orbit.h"
 #include "scenes/text/message_text.h"
-#include "studies/error/error_budget.h"
 
 namespace earthshine::app {
 namespace {
@@ -92,7 +92,7 @@ void add_notes_of_scene(const StudyPart& part, const std::string& scene,
   }
   for (const std::string& limit : limits) notes.push_back(scene + "Limit reached: " + limit + ".");
   const scenes::World of = part.basis_scene.world(*part.query);
-  for (const std::string& missing : studies::not_captured(of, {})) {
+  for (const std::string& missing : raytrace::not_captured(of, {})) {
     notes.push_back(scene + "Not simulated: " + missing + ".");
   }
 }

@@ -19,7 +19,7 @@ namespace {
 // the same way.
 constexpr std::size_t most_suns = 8;
 
-// Where the light of a patch's samples ends: all of it on the patch, or (LightWays::kept) a share.
+// Where the light of a patch's samples ends: all of it on the patch, or (SpecularPaths::kept) a share.
 struct Landing {
   std::vector<double> area_m2;
   const std::vector<Rgb>& kept;  // per patch; empty: all
@@ -100,7 +100,7 @@ class SourceRays {
       part.escaped += base::luminance(weight);
       return;
     }
-    const scenes::LightWays::Face* face = query_.ways().face(hit.triangle);
+    const scenes::SpecularPaths::Face* face = query_.specular_paths().face(hit.triangle);
     const bool is_back =
         !hit.front && !scene_.materials[scene_.triangles[hit.triangle].material].two_sided;
     const Rgb through = face != nullptr ? weight * face->through : Rgb(0.0);
@@ -122,8 +122,8 @@ class SourceRays {
     if (thrown) {
       part.black += base::luminance(reflected);
     } else {
-      follow(at + lift, query_.ways().mirrors()[mirror].turned(direction), reflected, panes + 1,
-             true, part);
+      follow(at + lift, query_.specular_paths().mirrors()[mirror].turned(direction), reflected,
+             panes + 1, true, part);
     }
   }
 

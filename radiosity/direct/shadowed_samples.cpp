@@ -2,28 +2,28 @@
 #include "radiosity/direct/shadowed_samples.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "base/numbers/random.h"
 #include "radiosity/bodies/closed_bodies.h"
 #include "radiosity/patches/patch_offset.h"
+#include "scenes/light/shadow_queue.h"
 
 namespace earthshine::radiosity {
 namespace {
 
 using scenes::LightSample;
-using scenes::RayPacket;
 
 // Per point wanted of a patch that a body covers in part: a sliver left open is not looked for
 // longer.
 constexpr int most_draws = 64;
 
-// Adds up shadowed samples of some sources eight at a time.
+// Adds up shadowed samples of some sources.
 class Receiver {
  public:
   Receiver(const scenes::RayQuery& query, std::size_t sources, int points)
       : query_(query),
+        shadows_(query),
         sources_(sources),
         sum_(sources, Rgb(0.0)),
         by_point_(static_cast<std::size_t>(points) * sources, 0.0) {}
@@ -31,18 +31,14 @@ class Receiver {
   void add(std::size_t source, int point, const SurfacePoint& from, const LightSample& sample) {
     const double cosine = glm::dot(sample.direction, from.normal);
     if (cosine <= 0.0 || base::max_component(sample.normal_illuminance_lx) <= 0.0) return;
-    const Vec3 origin = lifted(from, query_);
-    const scenes::ShadowWay way = scenes::shadow_way(sample, from.position, origin);
-    if (way.reach_m <= 0.0) return;
-    query_.set(packet_, count_, origin, way.direction, way.reach_m);
-    mirror_[count_] = sample.mirror;
-    source_[count_] = source;
-    point_[count_] = static_cast<std::size_t>(point);
-    contribution_[count_++] = sample.normal_illuminance_lx * cosine;
-    if (count_ == RayPacket::width) flush();
+    shadows_.add(sample, from.position, lifted(from, query_),
+                 {source, static_cast<std::size_t>(point), sample.normal_illuminance_lx * cosine},
+                 [this](const Arriving& light, const Rgb& share) { take(light, share); });
   }
 
-  void finish() { flush(); }
+  void finish() {
+    shadows_.trace([this](const Arriving& light, const Rgb& share) { take(light, share); });
+  }
   [[nodiscard]] const Rgb& sum(std::size_t source) const { return sum_[source]; }
   // Of the points' luminance-weighted values.
   [[nodiscard]] double sum_of_squares(std::size_t source) const {
@@ -52,32 +48,24 @@ class Receiver {
     }
     return squares;
   }
-  [[nodiscard]] std::uint64_t rays() const { return rays_; }
+  [[nodiscard]] std::uint64_t rays() const { return shadows_.rays(); }
 
  private:
-  void flush() {
-    if (count_ == 0) return;
-    std::array<Rgb, RayPacket::width> shares;
-    query_.light_shares(packet_, mirror_, count_, shares.data());
-    for (std::size_t k = 0; k < count_; ++k) {
-      const Rgb arrives = shares[k] * contribution_[k];
-      sum_[source_[k]] += arrives;
-      by_point_[point_[k] * sources_ + source_[k]] += base::luminance(arrives);
-    }
-    rays_ += count_;
-    count_ = 0;
+  struct Arriving {
+    std::size_t source, point;
+    Rgb illuminance_lx;
+  };
+  void take(const Arriving& light, const Rgb& share) {
+    const Rgb arrives = share * light.illuminance_lx;
+    sum_[light.source] += arrives;
+    by_point_[light.point * sources_ + light.source] += base::luminance(arrives);
   }
 
   const scenes::RayQuery& query_;
+  scenes::ShadowQueue<Arriving> shadows_;
   std::size_t sources_;
-  RayPacket packet_;
-  std::uint32_t mirror_[RayPacket::width];
-  Rgb contribution_[RayPacket::width];
-  std::size_t source_[RayPacket::width], point_[RayPacket::width];
-  std::size_t count_ = 0;
   std::vector<Rgb> sum_;
   std::vector<double> by_point_;  // point * sources + source
-  std::uint64_t rays_ = 0;
 };
 
 // Near a source the illuminance varies across the patch as 1/r^2, and more points are worth their
@@ -140,7 +128,7 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
                        std::span<const Source> sources, std::uint64_t seed, std::uint64_t& rays,
                        base::Hears hears) {
   const std::size_t each = sources.size();
-  const std::span<const scenes::FlatMirror> mirrors = query.ways().mirrors();
+  const std::span<const scenes::FlatMirror> mirrors = query.specular_paths().mirrors();
   Sampled sampled{std::vector<Rgb>(patches.count() * each, Rgb(0.0)),
                   std::vector<double>(patches.count() * each, 0.0)};
   constexpr std::size_t chunk = 256;

@@ -164,9 +164,9 @@ FormFactors cast_rows(const scenes::Scene& scene, const scenes::RayQuery& query,
       std::bit_ceil(std::max(static_cast<std::uint32_t>(std::max(1, options.rays_per_patch)),
                              static_cast<std::uint32_t>(scenes::RayPacket::width))));
   factors.kept = kept_shares(scene, patches);
-  for (std::uint32_t i = 0; !query.ways().empty() && i < patches.count(); ++i) {
-    factors.kept_direct.push_back(
-        query.ways().kept(patches.facets[patches.facet[i]].triangle, patches.is_back[i] == 0));
+  for (std::uint32_t i = 0; !query.specular_paths().empty() && i < patches.count(); ++i) {
+    factors.kept_direct.push_back(query.specular_paths().kept(
+        patches.facets[patches.facet[i]].triangle, patches.is_back[i] == 0));
   }
   factors.sky.assign(count, 0.0);
   factors.black.assign(count, 0.0);

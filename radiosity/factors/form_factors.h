@@ -49,7 +49,7 @@ struct FormFactors {
   std::vector<double> escape, lost;  // shares of what leaves j that reach the sky, black backs
   std::vector<double> kept;          // a_j per patch
   std::vector<Rgb> kept_direct;  // of light straight from sources, the share that ends on a patch
-                                 // (scenes/light_ways.h); empty: all
+                                 // (scenes/specular_paths.h); empty: all
   std::vector<double>
       back_hits;  // per object of the scene: rays of exposed patches that met its back
   std::vector<Rgb> sky_illuminance;  // per patch, or per patch and cell of the sky, lx: pi times

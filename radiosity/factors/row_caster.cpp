@@ -13,8 +13,6 @@ namespace {
 using scenes::HitPacket;
 using scenes::RayPacket;
 
-constexpr int most_specular_steps = 64;
-
 std::vector<bool> materials_that_pass_on(const scenes::Scene& scene) {
   std::vector<bool> passes_on;
   for (const scenes::Material& m : scene.materials) {
@@ -171,41 +169,37 @@ void RowCaster::escape(const Vec3& direction, double weight, Row& row, Band& ban
 }
 
 // Counts a hit on a mirror or glass and the hits behind it.
-void RowCaster::follow(const RayPacket& packet, std::size_t lane, scenes::Hit hit, Row& row,
-                       HitCounter& counter, Band& band) const {
-  Vec3 way = direction(packet, lane);
+void RowCaster::follow(const RayPacket& packet, std::size_t lane, const scenes::Hit& first,
+                       Row& row, HitCounter& counter, Band& band) const {
   float weight = 1.0F;
-  for (int step = 0;; ++step) {
+  const auto visit = [&](const scenes::Hit& hit, const Vec3& way, int step) {
+    if (step > 0) ++row.rays;
     if (hit.missed()) {
-      return escape(way, double(weight), row, band);
+      escape(way, double(weight), row, band);
+      return false;
     }
     const std::uint32_t to = patches_.find(hit.triangle, hit.u, hit.v, hit.front);
     const scenes::Material& material = scene_.materials[scene_.triangles[hit.triangle].material];
     const bool glass = base::max_component(material.transmit) > 0.0;
     if (to == no_patch && !glass) {
       row.black += weight;
-      return;
+      return false;
     }
     // The inside of a glass body passes light on as its outside does, and is no patch of its own.
     const double passed_on = to == no_patch ? 1.0 : 1.0 - kept_[to];
     if (to != no_patch) counter.add(to, weight);
     weight *= static_cast<float>(passed_on);
-    if (weight <= 0.0F) return;
-    if (step == most_specular_steps) {
-      // What is left of the weight stays where it is: no light may end that nothing absorbs.
-      if (to != no_patch && kept_[to] > 0.0) {
-        counter.add(to, weight / static_cast<float>(kept_[to]));
-      } else {
-        row.black += weight;
-      }
-      return;
+    if (weight <= 0.0F) return false;
+    if (step < scenes::most_specular_steps) return true;
+    // The remaining weight stays here: no light may end that nothing absorbs.
+    if (to != no_patch && kept_[to] > 0.0) {
+      counter.add(to, weight / static_cast<float>(kept_[to]));
+    } else {
+      row.black += weight;
     }
-    const scenes::SpecularStep on =
-        scenes::specular_step(scene_, hit, way, query_.offset_m(hit.triangle));
-    way = on.direction;
-    hit = query_.closest(on.origin, way);
-    ++row.rays;
-  }
+    return false;
+  };
+  scenes::follow_specular(scene_, query_, first, direction(packet, lane), false, visit);
 }
 
 }  // namespace earthshine::radiosity

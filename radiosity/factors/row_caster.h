@@ -59,7 +59,7 @@ class RowCaster {
   void count_hits(const scenes::RayPacket& packet, const scenes::HitPacket& hits,
                   std::span<const std::uint32_t> near, Row& row, HitCounter& counter,
                   Band& band) const;
-  void follow(const scenes::RayPacket& packet, std::size_t lane, scenes::Hit hit, Row& row,
+  void follow(const scenes::RayPacket& packet, std::size_t lane, const scenes::Hit& first, Row& row,
               HitCounter& counter, Band& band) const;
   // A ray that met nothing: to the sky's light of the row that comes last.
   void escape(const Vec3& direction, double weight, Row& row, Band& band) const;

@@ -82,5 +82,8 @@ struct RenderOptions {
 
 // Told how much of the expected work is done; called from one thread at a time.
 using Progress = std::function<void(std::size_t done, std::size_t total)>;
+// Told the name of each stage as it begins; gives the listener for its progress, which may be
+// empty.
+using StageListener = std::function<Progress(const std::string& stage)>;
 
 }  // namespace earthshine::raytrace

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // GatherField's paths that find what the solution lacks, and its rays over lobes.
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "base/ranks/ranks.h"
 #include "raytrace/gather/gather_field.h"
 #include "raytrace/gather/gather_tiles.h"
-#include "scenes/reflect/specular.h"
+#include "scenes/reflect/brdf.h"
 
 namespace earthshine::raytrace {
-
-using base::pi;
 
 namespace {
 constexpr std::uint32_t paths_between_stops = 256;
@@ -52,7 +48,7 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
             return;
           }
           base::Rng rng(key.with(k));
-          walker.take_turn(random_number_of(p), first / 2 + k, half);  // neighbours: another first
+          walker.select_sun_stratum(random_number_of(p), first / 2 + k, half);  // neighbours: another first
           const auto u = directions.point2(k);
           const RayStart& start = origins.start[k % origins.count];
           if (lobe) {
@@ -85,22 +81,17 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
   add_notes(kind, notes_of);
 }
 
-// L = integral of L_in (k_s / pi) cos^n alpha cos theta by a ray of density
-// (n + 1) / (2 pi) cos^n alpha about the mirrored view.
+// The radiance that the lobe reflects for k_s = 1, by one ray drawn from it.
 void GatherField::lobe_sample(std::uint32_t material, const RayStart& start,
                               const std::array<float, 2>& u, PathWalker& walker, base::Rng& rng,
                               std::vector<Rgb>& sum, RayCounts& counts) const {
-  const Vec3 origin = start.position, normal(start.normal);
-  const scenes::Material& worn = world_.scene.materials[material];
-  const double n = worn.shininess;
-  const double cos_alpha = std::pow(1.0 - double(u[0]), 1.0 / (n + 1.0));
-  const double sine = std::sqrt(std::max(0.0, 1.0 - cos_alpha * cos_alpha));
-  const double phi = 2.0 * pi * double(u[1]);
-  const base::Frame3 frame = base::frame_around(glm::reflect(Vec3(start.along), normal));
-  const Vec3 direction = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cos_alpha});
-  const double cosine = glm::dot(direction, normal);
-  if (cosine <= 0.0) return;
-  const Rgb weight(scenes::lobe_weight(worn, -glm::dot(Vec3(start.along), normal), cosine));
+  const Vec3 origin = start.position, normal(start.normal), along(start.along);
+  const scenes::Brdf brdf{world_.scene.materials[material], Rgb(0.0), normal,
+                          glm::reflect(along, normal), -glm::dot(along, normal)};
+  const auto [direction, share] =
+      brdf.sample(scenes::Brdf::Term::Specular, double(u[0]), double(u[1]));
+  if (share <= 0.0) return;
+  const Rgb weight(share);
   ++counts.lobe;
   const scenes::Hit hit = world_.query.closest(origin, direction);
   incoming_.add(hit, direction, {}, weight, sum, counts);

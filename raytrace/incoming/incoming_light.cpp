@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/tuning.h"
-#include "scenes/light_ways.h"
 #include "scenes/reflect/specular.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_cells.h"
+#include "scenes/specular_paths.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -27,27 +26,29 @@ void IncomingLight::see_sky(const Vec3& direction, const Rgb& weight, std::span<
 
 // Through glass that does not bend them aimed rays come to bright patches, too; all else that
 // mirrors and glass show is left to the others.
-void IncomingLight::follow_specular(scenes::Hit hit, Vec3 direction, const RayShare& share,
-                                    Rgb weight, std::span<Rgb> out, RayCounts& rays) const {
+void IncomingLight::follow_specular(const scenes::Hit& first, const Vec3& along,
+                                    const RayShare& share, Rgb weight, std::span<Rgb> out,
+                                    RayCounts& rays) const {
   const bool aimed = share.aimed_at != radiosity::no_patch;
-  bool straight = true;
-  for (int step = 0; step < tuning::most_specular_steps; ++step) {
+  bool glass = false;  // the last surface
+  const auto visit = [&](const scenes::Hit& hit, const Vec3& direction, int step) {
+    if (step > 0) {
+      ++(glass ? rays.refraction : rays.mirror);
+      if (hit.missed()) {
+        if (!aimed) see_sky(direction, weight, out, false);
+        return false;
+      }
+      const bool straight = scenes::goes_straight_on(along, direction);
+      const double kept = straight ? kept_part(hit, direction, share) : 1.0;
+      if (!table_.empty() && kept > 0.0) table_.add(hit, weight * kept, out);
+      if ((aimed && kept > 0.0) || step == scenes::most_specular_steps) return false;
+    }
     const scenes::Material& material = scene_.materials[scene_.triangles[hit.triangle].material];
-    const bool glass = base::max_component(material.transmit) > 0.0;
-    if (!material.passes_light_on() || !(hit.front || material.two_sided || glass)) return;
+    glass = base::max_component(material.transmit) > 0.0;
     weight *= material.mirror + material.transmit;
-    const scenes::SpecularStep on =
-        scenes::specular_step(scene_, hit, direction, query_.offset_m(hit.triangle), aimed);
-    straight = straight && scenes::goes_straight_on(direction, on.direction);
-    if (aimed && !straight) return;
-    direction = on.direction;
-    hit = query_.closest(on.origin, direction);
-    ++(glass ? rays.refraction : rays.mirror);
-    if (hit.missed()) return aimed ? void() : see_sky(direction, weight, out, false);
-    const double kept = straight ? kept_part(hit, direction, share) : 1.0;
-    if (!table_.empty() && kept > 0.0) table_.add(hit, weight * kept, out);
-    if (aimed && kept > 0.0) return;
-  }
+    return material.passes_light_on() && (hit.front || material.two_sided || glass);
+  };
+  scenes::follow_specular(scene_, query_, first, along, aimed, visit);
 }
 
 double IncomingLight::kept_part(const scenes::Hit& hit, const Vec3& direction,

@@ -72,8 +72,8 @@ class IncomingLight {
 
  private:
   void see_sky(const Vec3& direction, const Rgb& weight, std::span<Rgb> out, bool straight) const;
-  void follow_specular(scenes::Hit hit, Vec3 direction, const RayShare& share, Rgb weight,
-                       std::span<Rgb> out, RayCounts& rays) const;
+  void follow_specular(const scenes::Hit& first, const Vec3& along, const RayShare& share,
+                       Rgb weight, std::span<Rgb> out, RayCounts& rays) const;
   const scenes::Scene& scene_;
   const scenes::RayQuery& query_;
   const RadianceTable& table_;

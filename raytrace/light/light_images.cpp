@@ -17,8 +17,8 @@ void LightSampler::add_images() {
   }
 }
 
-void LightSampler::find_one_rays() {
-  one_rays_.resize(count());
+void LightSampler::find_delta_lights() {
+  delta_lights_.resize(count());
   for (std::size_t k = 0; k < count(); ++k) {
     const Light& light = lights_[k];
     if (light.kind != Kind::Lamp || scenes::is_wide(scene_.lamps[light.index].kind) ||
@@ -27,8 +27,8 @@ void LightSampler::find_one_rays() {
     }
     const scenes::FlatMirror* mirror = light.mirror;
     const scenes::Lamp& lamp = scene_.lamps[light.index];
-    OneRay& ray = one_rays_[k];
-    ray.is_all = true;
+    DeltaLight& ray = delta_lights_[k];
+    ray.is_delta = true;
     ray.position = mirror != nullptr ? mirror->image(lamp.position) : lamp.position;
     ray.axis = mirror != nullptr ? mirror->turned(lamp.axis) : lamp.axis;
     if (lamp.kind == scenes::LampKind::Spot) ray.field_cosine = scenes::field_cosine(lamp);
@@ -36,16 +36,16 @@ void LightSampler::find_one_rays() {
   }
 }
 
-void LightSampler::find_throws() {
-  throws_.resize(1 + mirrors_.size());
-  for (std::size_t m = 0; m < throws_.size(); ++m) {
-    if (m > 0) throws_[m].mirror = &mirrors_[m - 1];
+void LightSampler::find_mirror_lights() {
+  mirror_lights_.resize(1 + mirrors_.size());
+  for (std::size_t m = 0; m < mirror_lights_.size(); ++m) {
+    if (m > 0) mirror_lights_[m].mirror = &mirrors_[m - 1];
     const std::size_t first = m * sources_;
     for (std::size_t k = 0; k < sources_; ++k) {
-      if (m == 0 || reaches_mirror(first + k)) throws_[m].lights.push_back(first + k);
+      if (m == 0 || reaches_mirror(first + k)) mirror_lights_[m].lights.push_back(first + k);
     }
     for (const std::size_t k : always_) {
-      if (m == 0 || reaches_mirror(first + k)) throws_[m].always.push_back(first + k);
+      if (m == 0 || reaches_mirror(first + k)) mirror_lights_[m].always.push_back(first + k);
     }
   }
 }
@@ -53,8 +53,8 @@ void LightSampler::find_throws() {
 // False where nothing of a light falls on its mirror's front, as far as it is known without rays.
 bool LightSampler::reaches_mirror(std::size_t index) const {
   const scenes::FlatMirror& mirror = *lights_[index].mirror;
-  const OneRay& ray = one_rays_[index];
-  if (!ray.is_all) return true;
+  const DeltaLight& ray = delta_lights_[index];
+  if (!ray.is_delta) return true;
   if (ray.lamp_height_m <= 0.0) return false;
   if (ray.field_cosine < -1.0) return true;
   const Vec3 way = mirror.centre - ray.position;  // from the image, whose axis is turned as well

@@ -72,12 +72,12 @@ LightSampler::LightSampler(const scenes::World& world, Indirect indirect, int di
   for (const scenes::Lamp& lamp : scene_.lamps) cones_.push_back(scenes::spot_cone(lamp));
   surfaces_.tree = tree_of(surfaces_.lights);
   if (per_group && world.effects.sun_parts) {
-    turns_ = SunTurns(world.groups.sun_parts, world.scene.sky_parts->suns.size());
+    sun_strata_ = SunStrata(world.groups.sun_parts, world.scene.sky_parts->suns.size());
   }
   gather_clusters(per_group);
   add_images();
-  find_one_rays();
-  find_throws();
+  find_delta_lights();
+  find_mirror_lights();
 }
 
 void LightSampler::gather_clusters(bool per_group) {
@@ -140,7 +140,7 @@ std::optional<LightSampler::SeenLamp> LightSampler::seen_lamp(const Vec3& origin
 
 void LightSampler::choose(const scenes::Receiver& receiver, double u,
                           std::vector<scenes::LightChoice>& chosen) const {
-  choose_thrown(throws_.front(), receiver, u, 0, chosen);
+  choose_thrown(mirror_lights_.front(), receiver, u, 0, chosen);
   for (std::size_t m = 0; m < mirrors_.size(); ++m) {
     const scenes::FlatMirror& mirror = mirrors_[m];
     if (mirror.height_m(receiver.point) <= 0.0) continue;
@@ -148,14 +148,14 @@ void LightSampler::choose(const scenes::Receiver& receiver, double u,
     image.point = mirror.image(receiver.point);
     image.normal = mirror.turned(receiver.normal);
     image.mirrored = mirror.turned(receiver.mirrored);
-    choose_thrown(throws_[m + 1], image, u, (m + 1) * sources_, chosen);
+    choose_thrown(mirror_lights_[m + 1], image, u, (m + 1) * sources_, chosen);
   }
 }
 
-void LightSampler::choose_thrown(const Throws& throws, const scenes::Receiver& receiver, double u,
+void LightSampler::choose_thrown(const MirrorLights& by, const scenes::Receiver& receiver, double u,
                                  std::size_t first,
                                  std::vector<scenes::LightChoice>& chosen) const {
-  for (const std::size_t light : throws.always) chosen.push_back({light, 1.0});
+  for (const std::size_t light : by.always) chosen.push_back({light, 1.0});
   for (const Cluster& crowd : clusters_) {
     const std::size_t from = chosen.size();
     crowd.tree.choose(receiver, u, tuning::smallest_share, chosen);
@@ -203,9 +203,9 @@ bool LightSampler::may_reach(std::size_t index, const Vec3& point, const Vec3& n
     const double angle_rad = base::radians(scene_.sun->angular_radius_deg) + rounding;
     return sun_may_reach(scene_.sun->direction, angle_rad, mirror, point, normal);
   }
-  const OneRay& ray = one_rays_[index];
+  const DeltaLight& ray = delta_lights_[index];
   const Vec3 way = ray.position - point;
-  if (ray.is_all) {
+  if (ray.is_delta) {
     // By squares: a picture asks this tens of millions of times, mostly of images.
     const double distance2 = glm::dot(way, way);
     if (signed_square(glm::dot(way, normal)) < signed_square(-rounding) * distance2) return false;
@@ -214,7 +214,7 @@ bool LightSampler::may_reach(std::size_t index, const Vec3& point, const Vec3& n
   }
   const double height = mirror != nullptr ? mirror->height_m(point) : 0.0;
   if (mirror != nullptr && height <= 0.0) return false;
-  if (!ray.is_all || mirror == nullptr) return true;
+  if (!ray.is_delta || mirror == nullptr) return true;
   if (ray.lamp_height_m <= 0.0) return false;
   const Vec3 off = point + height / (height + ray.lamp_height_m) * way - mirror->centre;
   return glm::dot(off, off) <= mirror->radius_m * mirror->radius_m * (1.0 + 2e-6);

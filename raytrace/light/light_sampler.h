@@ -9,7 +9,7 @@
 
 #include "raytrace/frame/frame.h"
 #include "raytrace/frame/options.h"
-#include "raytrace/light/sun_turns.h"
+#include "raytrace/light/sun_strata.h"
 #include "scenes/effects/world.h"
 #include "scenes/light/emitters.h"
 #include "scenes/light/lamp_light.h"
@@ -25,7 +25,7 @@ class LightSampler {
   // by `distributed_lights` fixed points or directions of equal share, the same for every pixel;
   // the Earth by points of earth_area (distributed_area.h), or by directions to its disc.
   // per_group: every light group gets an image of its own, so that lamps are chosen within each and
-  // the Suns of a sky in parts take turns.
+  // the Suns of a sky in parts are divided into strata.
   // mirrors: flat ones, that throw each source's light a second time; not of distributed lights.
   LightSampler(const scenes::World& world, Indirect indirect, int distributed_lights,
                bool per_group = false, std::optional<scenes::Lamp> earth_area = std::nullopt,
@@ -39,7 +39,7 @@ class LightSampler {
   void choose(const scenes::Receiver& receiver, double u,
               std::vector<scenes::LightChoice>& chosen) const;
 
-  [[nodiscard]] const SunTurns& turns() const { return turns_; }
+  [[nodiscard]] const SunStrata& sun_strata() const { return sun_strata_; }
 
   // The lamp whose shining surface a ray meets first, nearer than nearer_than_m.
   struct SeenLamp {
@@ -57,37 +57,41 @@ class LightSampler {
   // one: a Sun below the horizon, a lamp behind the surface or not turned to it, one whose image is
   // not seen in the mirror from there.
   [[nodiscard]] bool may_reach(std::size_t light, const Vec3& point, const Vec3& normal) const;
-  // Whether (u, v) of sample() choose anything: not of lamps without size.
-  [[nodiscard]] bool has_extent(std::size_t light) const { return !one_rays_[light].is_all; }
   // Where a lamp without size is that shines straight, or nothing.
   [[nodiscard]] const Vec3* lamp_point(std::size_t light) const {
-    return light < sources_ && one_rays_[light].is_all ? &one_rays_[light].position : nullptr;
+    return light < sources_ && delta_lights_[light].is_delta ? &delta_lights_[light].position : nullptr;
   }
-  // visit(light) for each that may reach such a surface, but for the Suns of other turns.
+  // visit(light) for each that may reach such a surface, but for the Suns of other strata.
   template <class Visit>
-  void each_that_may_reach(const Vec3& point, const Vec3& normal, std::size_t turn,
+  void each_that_may_reach(const Vec3& point, const Vec3& normal, std::size_t sun_stratum,
                            const Visit& visit) const {
-    for (const Throws& throws : throws_) {
-      if (throws.mirror != nullptr && throws.mirror->height_m(point) <= 0.0) continue;
-      for (const std::size_t light : throws.lights) {
-        if (weight(lights_[light], turn) <= 0.0) continue;
+    for (const MirrorLights& by : mirror_lights_) {
+      if (by.mirror != nullptr && by.mirror->height_m(point) <= 0.0) continue;
+      for (const std::size_t light : by.lights) {
+        if (weight(lights_[light], sun_stratum) <= 0.0) continue;
         if (may_reach(light, point, normal)) visit(light);
       }
     }
   }
   [[nodiscard]] scenes::LightSample sample(std::size_t light, const Vec3& point, double u,
                                            double v) const;
-  // The Suns of a sky in parts have discs of one size, so that a point of one, about its middle, is
-  // one of all: sun_place(u, v).
-  [[nodiscard]] bool is_sun_part(std::size_t light) const {
-    return lights_[light].kind == Kind::SunPart;
+  // One of a surface's samples of many lights, each by uniform(light), a pair in [0, 1). on_sun,
+  // empty before the first: the place on the disc that all Suns of a sky in parts share.
+  template <class Uniform>
+  [[nodiscard]] scenes::LightSample sample(std::size_t light, const Vec3& point,
+                                           const Uniform& uniform,
+                                           std::optional<Vec3>& on_sun) const {
+    if (delta_lights_[light].is_delta) return sample(light, point, 0.0, 0.0);
+    if (lights_[light].kind == Kind::SunPart) {
+      if (!on_sun) {
+        const auto u = uniform(light);
+        on_sun = sun_parts_.front().disc.local(double(u[0]), double(u[1]));
+      }
+      return sample_sun(light, point, *on_sun);
+    }
+    const auto u = uniform(light);
+    return sample(light, point, double(u[0]), double(u[1]));
   }
-  [[nodiscard]] Vec3 sun_place(double u, double v) const {
-    return sun_parts_.front().disc.local(u, v);
-  }
-  [[nodiscard]] scenes::LightSample sample_sun(std::size_t light, const Vec3& point,
-                                               const Vec3& place) const;
-
  private:
   enum class Kind { Sun, SunPart, Earth, EarthArea, Lamp, Emitters };
   struct Light {
@@ -101,8 +105,8 @@ class LightSampler {
   };
   // What lamps without size, or their images, send to a point: one ray, within the lamp's cone and
   // off where the mirror is.
-  struct OneRay {
-    bool is_all = false;         // that the light is
+  struct DeltaLight {
+    bool is_delta = false;         // that the light is
     double field_cosine = -2.0;  // spot lamps: of half their field; others shine all round
     double lamp_height_m = 0.0;  // over the mirror
     Vec3 position{0.0}, axis{0.0};
@@ -112,24 +116,26 @@ class LightSampler {
     std::vector<std::size_t> lights;  // of the tree's numbers
   };
   // What comes by one mirror, or straight.
-  struct Throws {
+  struct MirrorLights {
     const scenes::FlatMirror* mirror = nullptr;
     std::vector<std::size_t> lights;  // that reach it
     std::vector<std::size_t> always;  // of these, those that are not left to chance
   };
+  [[nodiscard]] scenes::LightSample sample_sun(std::size_t light, const Vec3& point,
+                                               const Vec3& place) const;
   void add_images();
-  void find_throws();
+  void find_mirror_lights();
   [[nodiscard]] bool reaches_mirror(std::size_t light) const;
   [[nodiscard]] scenes::LightSample sample_straight(const Light& light, const Vec3& point, double u,
                                                     double v) const;
   void add(Light light, int copies);
   void gather_clusters(bool per_group);
-  void find_one_rays();
+  void find_delta_lights();
   // choose() of what comes by one mirror, or straight; the lights' numbers there begin at `first`.
-  void choose_thrown(const Throws& throws, const scenes::Receiver& receiver, double u,
+  void choose_thrown(const MirrorLights& by, const scenes::Receiver& receiver, double u,
                      std::size_t first, std::vector<scenes::LightChoice>& chosen) const;
-  [[nodiscard]] double weight(const Light& light, std::size_t turn) const {
-    return light.kind == Kind::SunPart ? turns_.weight(light.group, turn) : 1.0;
+  [[nodiscard]] double weight(const Light& light, std::size_t stratum) const {
+    return light.kind == Kind::SunPart ? sun_strata_.weight(light.group, stratum) : 1.0;
   }
   [[nodiscard]] scenes::LightTree tree_of(const std::vector<std::size_t>& lamps) const;
 
@@ -137,11 +143,11 @@ class LightSampler {
   bool distributed_;
   std::span<const scenes::FlatMirror> mirrors_;
   std::optional<scenes::Lamp> earth_area_;
-  SunTurns turns_;
+  SunStrata sun_strata_;
   std::vector<Light> lights_;  // the sources themselves, then their images
   std::size_t sources_ = 0;
-  std::vector<OneRay> one_rays_;     // by number of the light
-  std::vector<Throws> throws_;       // straight, then by each mirror
+  std::vector<DeltaLight> delta_lights_;     // by number of the light
+  std::vector<MirrorLights> mirror_lights_;       // straight, then by each mirror
   std::vector<std::size_t> always_;  // lights that are not left to chance
   std::vector<Cluster> clusters_;
   Cluster surfaces_{scenes::LightTree({}), {}};  // lamps that a ray can meet, by their number there

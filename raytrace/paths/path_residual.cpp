@@ -2,17 +2,11 @@
 // PathWalker's walks that find what the radiosity solution lacks.
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 #include "raytrace/paths/path_walker.h"
 #include "raytrace/tuning.h"
 
 namespace earthshine::raytrace {
-namespace {
-
-using base::pi;
-
-}  // namespace
 
 std::span<const Rgb> PathWalker::residual(const IncomingLight& solution, const Ray& ray,
                                           const scenes::Hit& first, const RayShare& share,
@@ -46,7 +40,7 @@ std::span<const Rgb> PathWalker::residual_at(const IncomingLight& solution, cons
 void PathWalker::follow(const IncomingLight& solution, scenes::Hit hit) {
   for (std::uint32_t turns = 1; !hit.missed(); ++turns) {
     const Surface surface = surface_at(hit, scenes::hit_position(world_.scene, hit));
-    if (kept_ <= 0.0 && !scenes::is_straight_glass(surface.material)) return;
+    if (kept_ <= 0.0 && !scenes::is_straight_glass(surface.material())) return;
     solution.add(hit, ray_.direction, share_, -weight_, radiance_, rays_);
     if (is_black(surface)) return;
     const Rgb arriving = weight_;
@@ -82,13 +76,12 @@ bool PathWalker::turn_diffusely(const IncomingLight& solution, const Vec3& origi
     share_ = aimed.share;
     return aimed.weight > 0.0;
   }
-  const double radius = std::sqrt(u), phi = 2.0 * pi * v, cosine = std::sqrt(1.0 - u);
-  const base::Frame3 frame = base::frame_around(normal);
-  ray_ = {origin, frame.to_world({radius * std::cos(phi), radius * std::sin(phi), cosine})};
+  const Vec3 local = scenes::cosine_sample(u, v);
+  ray_ = {origin, base::frame_around(normal).to_world(local)};
   share_ = {};
   if (!aims) return true;
   weight_ /= 1.0 - tuning::aimed_share;
-  share_.cosine = cosine;
+  share_.cosine = local.z;
   share_.from = {origin, normal};
   share_.found_rays = 1.0 - tuning::aimed_share;
   share_.aimed_rays = tuning::aimed_share;

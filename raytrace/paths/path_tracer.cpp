@@ -111,7 +111,7 @@ Frame trace_paths(const scenes::World& world, const scenes::Camera& camera,
   check(options);
   // As for the final gather: emitters that are a large part of the area are met, not sampled.
   const LightSampler lights(world, Indirect::Radiosity, 1, false, std::nullopt,
-                            world.query.ways().mirrors());
+                            world.query.specular_paths().mirrors());
   const PathWorld paths = make_world(world, lights, options);
   const CameraModel model = make_camera_model(camera, options.columns, options.rows);
 

@@ -32,7 +32,7 @@ void PathWalker::begin(const Ray& start, base::Rng& rng) {
 }
 
 std::span<const Rgb> PathWalker::finished() {
-  world_.lights.turns().weigh(turn_of_suns_, radiance_);
+  world_.lights.sun_strata().weigh(sun_stratum_, radiance_);
   return radiance_;
 }
 
@@ -50,19 +50,19 @@ PathWalker::Surface PathWalker::surface_at(const scenes::Hit& hit, const Vec3& p
   const scenes::Scene& scene = world_.scene;
   const scenes::Material& material = scene.materials[scene.triangles[hit.triangle].material];
   const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
-  return {material,
+  const Vec3 normal = hit.front ? outward : -outward;
+  const Vec3 mirrored = glm::reflect(ray_.direction, outward);
+  return {{material, scenes::diffuse_at(scene, material, hit), normal, mirrored,
+           glm::dot(mirrored, normal)},
           position,
           outward,
-          hit.front ? outward : -outward,
-          glm::reflect(ray_.direction, outward),
           hit.front || material.two_sided,
-          scenes::diffuse_at(scene, material, hit),
           hit.triangle,
           world_.query.offset_m(hit.triangle)};
 }
 
 bool PathWalker::is_black(const Surface& surface) {
-  return !surface.shines && !base::is_lit(surface.material.transmit);
+  return !surface.shines && !base::is_lit(surface.material().transmit);
 }
 
 // Adds what the ray's end sends along it and turns the ray; false where the path ends.
@@ -76,7 +76,7 @@ bool PathWalker::step() {
   const Surface surface =
       surface_at(hit, scenes::hit_position(world_.scene, hit, ray_.origin, ray_.direction));
   if (is_black(surface)) return false;
-  if (at_first_) met_surface_ = surface.reflects() || surface.material.passes_light_on();
+  if (at_first_) met_surface_ = surface.reflects() || surface.material().passes_light_on();
   shine(surface, hit);
   at_first_ = false;
   return go_on(surface, nullptr);
@@ -85,12 +85,13 @@ bool PathWalker::step() {
 // What the surface emits, and reflects straight from the sources.
 void PathWalker::shine(const Surface& surface, const scenes::Hit& hit) {
   if (!surface.shines) return;
-  const scenes::Material& material = surface.material;
+  const scenes::Material& material = surface.material();
   const std::uint32_t number = world_.scene.triangles[hit.triangle].material;
   if (sees_sampled_ || !world_.sampled_emitter[number]) {
     see(world_.groups.material[number], scenes::emit_at(world_.scene, material, hit) / pi);
   }
-  if (from_camera_) add(world_.groups.ambient, surface.diffuse * world_.scene.ambient_radiance);
+  if (from_camera_)
+    add(world_.groups.ambient, surface.brdf.diffuse * world_.scene.ambient_radiance);
   if (surface.reflects()) light_directly(surface);
 }
 
@@ -122,89 +123,51 @@ void PathWalker::see_sky() {
 }
 
 bool PathWalker::see_lamp(const scenes::Hit& hit) {
-  scenes::LampHit nearest{hit.missed() ? std::numeric_limits<double>::infinity() : hit.t, Rgb(0.0)};
-  std::size_t group = no_group;
-  for (std::size_t k = 0; k < world_.scene.lamps.size(); ++k) {
-    if (world_.groups.lamp[k] == no_group) continue;
-    const auto lamp = scenes::hit_lamp(world_.scene.lamps[k], ray_.origin, ray_.direction);
-    if (!lamp || lamp->distance_m >= nearest.distance_m) continue;
-    nearest = *lamp;
-    group = world_.groups.lamp[k];
-  }
-  see(group, nearest.radiance);
-  return group != no_group;
+  const double nearest_m = hit.missed() ? std::numeric_limits<double>::infinity() : hit.t;
+  const auto seen = world_.lights.seen_lamp(ray_.origin, ray_.direction, nearest_m);
+  if (seen) see(world_.groups.lamp[seen->lamp], seen->hit.radiance);
+  return seen.has_value();
 }
 
 // One shadow ray to every source that is reached so: L = (E cos / pi) (k_d + k_s cos^n alpha).
 void PathWalker::light_directly(const Surface& surface) {
-  constexpr std::size_t width = scenes::RayPacket::width;
-  const Vec3 origin = surface.lifted();
-  scenes::RayPacket packet;
-  std::array<Rgb, width> value;
-  std::array<std::size_t, width> group{};
-  std::array<scenes::LightKind, width> kind{};
-  std::array<std::uint32_t, width> mirror{};
-  std::array<Rgb, width> shares;
-  std::size_t count = 0;
-  const auto trace = [&] {
-    if (count > 0) world_.query.light_shares(packet, mirror.data(), count, shares.data());
-    for (std::size_t k = 0; k < count; ++k) {
-      rays_.add_shadow(kind[k]);
-      add(group[k], shares[k] * value[k]);
-    }
-    count = 0;
+  const auto take = [&](const Arriving& light, const Rgb& share) {
+    rays_.add_shadow(light.kind);
+    add(light.group, share * light.radiance);
   };
   // Each light has numbers of its own, so that a lamp that is switched off moves no other's light.
   const base::Key key(static_cast<std::uint64_t>(rng_->next() * 0x1p53), base::Stream::LightSample,
                       0);
-  std::optional<Vec3> on_sun;  // of the Suns of a sky in parts
-  const auto sample = [&](std::size_t k) {
-    if (world_.lights.is_sun_part(k)) {
-      if (!on_sun) {
-        on_sun =
-            world_.lights.sun_place(base::uniform(key.with(k), 0), base::uniform(key.with(k), 1));
-      }
-      return world_.lights.sample_sun(k, surface.position, *on_sun);
-    }
-    const bool chooses = world_.lights.has_extent(k);
-    const double u = chooses ? base::uniform(key.with(k), 0) : 0.0;
-    const double v = chooses ? base::uniform(key.with(k), 1) : 0.0;
-    return world_.lights.sample(k, surface.position, u, v);
+  const auto uniform = [&](std::size_t k) -> glm::dvec2 {
+    return {base::uniform(key.with(k), 0), base::uniform(key.with(k), 1)};
   };
+  std::optional<Vec3> on_sun;
+  const Vec3 origin = surface.lifted();
   world_.lights.each_that_may_reach(
-      surface.position, surface.normal, turn_of_suns_, [&](std::size_t k) {
-        const scenes::LightSample light = sample(k);
-        const double cosine = glm::dot(light.direction, surface.normal);
+      surface.position, surface.brdf.normal, sun_stratum_, [&](std::size_t k) {
+        const scenes::LightSample light =
+            world_.lights.sample(k, surface.position, uniform, on_sun);
+        const double cosine = glm::dot(light.direction, surface.brdf.normal);
         if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) return;
-        Rgb reflectance = surface.diffuse;
-        const double cos_alpha = glm::dot(light.direction, surface.mirrored);
-        if (base::is_lit(surface.material.specular) && cos_alpha > 0.0) {
-          reflectance += surface.material.specular *
-                         scenes::lobe_at(surface.material, cos_alpha, cosine,
-                                         glm::dot(surface.mirrored, surface.normal));
-        }
-        const scenes::ShadowWay way = scenes::shadow_way(light, surface.position, origin);
-        if (way.reach_m <= 0.0) return;
-        value[count] = reflectance * light.normal_illuminance_lx * (cosine / pi);
-        group[count] = world_.lights.group(k);
-        kind[count] = world_.lights.kind(k);
-        mirror[count] = light.mirror;
-        world_.query.set(packet, count, origin, way.direction, way.reach_m);
-        if (++count == width) trace();
+        const Rgb reflectance = surface.brdf.eval(light.direction, cosine);
+        shadows_.add(light, surface.position, origin,
+                     {reflectance * light.normal_illuminance_lx * (cosine / pi),
+                      world_.lights.group(k), world_.lights.kind(k)},
+                     take);
       });
-  trace();
+  shadows_.trace(take);
 }
 
 // Chooses a mechanism in proportion to what it reflects and turns the ray by it. Some of the rays
 // are aimed where `solution` is bright.
 bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
-  const scenes::Material& material = surface.material;
-  const double n = material.shininess;
+  using Term = scenes::Brdf::Term;
+  const scenes::Material& material = surface.material();
   enum : std::size_t { Diffuse, Lobe, Mirror, Glass };
   const bool straight = scenes::is_straight_glass(material);
   const std::array<double, 4> share = {
-      surface.shines ? kept_ * base::max_component(surface.diffuse) : 0.0,
-      surface.shines ? kept_ * base::max_component(material.specular) * 2.0 / (n + 2.0) : 0.0,
+      surface.shines ? kept_ * base::max_component(surface.brdf.albedo(Term::Diffuse)) : 0.0,
+      surface.shines ? kept_ * base::max_component(surface.brdf.albedo(Term::Specular)) : 0.0,
       kept_ * base::max_component(material.mirror),
       (straight ? 1.0 : kept_) * base::max_component(material.transmit)};
   const double all = share[Diffuse] + share[Lobe] + share[Mirror] + share[Glass];
@@ -221,13 +184,13 @@ bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
   }
 
   if (way == Diffuse && solution != nullptr) {
-    weight_ *= surface.diffuse;
+    weight_ *= surface.brdf.diffuse;
     const double u = rng_->next(), v = rng_->next();
-    if (!turn_diffusely(*solution, surface.lifted(), surface.normal, u, v)) return false;
+    if (!turn_diffusely(*solution, surface.lifted(), surface.brdf.normal, u, v)) return false;
   } else if (way == Mirror || way == Glass) {
     pass_on(surface, way == Glass);
   } else {
-    scatter(surface, way == Lobe);
+    scatter(surface, way == Lobe ? Term::Specular : Term::Diffuse);
   }
   return base::is_lit(weight_);
 }
@@ -235,19 +198,19 @@ bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
 // Whether light that comes the other way is what shadow rays bring to where the path last turned:
 // by glass that does not bend it, by flat mirrors once.
 bool PathWalker::shadow_rays_follow(const Surface& surface, bool through) {
-  if (through) return scenes::is_straight_glass(surface.material);
-  const scenes::LightWays::Face* face = world_.query.ways().face(surface.triangle);
-  const bool front = glm::dot(surface.normal, surface.outward) > 0.0;
+  if (through) return scenes::is_straight_glass(surface.material());
+  const scenes::SpecularPaths::Face* face = world_.query.specular_paths().face(surface.triangle);
+  const bool front = glm::dot(surface.brdf.normal, surface.outward) > 0.0;
   return face != nullptr && face->mirror[front ? 0 : 1] != scenes::no_mirror && ++mirrors_ == 1;
 }
 
 void PathWalker::pass_on(const Surface& surface, bool through) {
-  weight_ *= through ? surface.material.transmit : surface.material.mirror;
-  Vec3 lift = surface.normal * surface.offset_m;
-  Vec3 direction = surface.mirrored;
+  weight_ *= through ? surface.material().transmit : surface.material().mirror;
+  Vec3 lift = surface.brdf.normal * surface.offset_m;
+  Vec3 direction = surface.brdf.mirrored;
   if (through) {
     const scenes::Refraction refraction =
-        scenes::refract(surface.material, surface.outward, ray_.direction);
+        scenes::refract(surface.material(), surface.outward, ray_.direction);
     direction = refraction.direction;
     if (!refraction.total) lift = -lift;
   }
@@ -262,22 +225,12 @@ void PathWalker::pass_on(const Surface& surface, bool through) {
   ++(through ? rays_.refraction : rays_.mirror);
 }
 
-void PathWalker::scatter(const Surface& surface, bool by_lobe) {
-  const double n = by_lobe ? surface.material.shininess : 1.0;
-  // Density (n + 1) / (2 pi) cos^n about the axis: exact for a diffuse surface (n = 1).
-  const double cos_axis = std::pow(1.0 - rng_->next(), 1.0 / (n + 1.0));
-  const double sine = std::sqrt(std::max(0.0, 1.0 - cos_axis * cos_axis));
-  const double phi = 2.0 * pi * rng_->next();
-  const base::Frame3 frame = base::frame_around(by_lobe ? surface.mirrored : surface.normal);
-  const Vec3 direction = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cos_axis});
-  if (by_lobe) {
-    const double cosine = std::max(0.0, glm::dot(direction, surface.normal));
-    const double seen = glm::dot(surface.mirrored, surface.normal);
-    weight_ *= surface.material.specular * scenes::lobe_weight(surface.material, seen, cosine);
-  } else {
-    weight_ *= surface.diffuse;
-  }
-  ray_ = {surface.lifted(), direction};
+void PathWalker::scatter(const Surface& surface, scenes::Brdf::Term term) {
+  const bool by_lobe = term == scenes::Brdf::Term::Specular;
+  const double u = rng_->next(), v = rng_->next();
+  const scenes::Brdf::Sample sample = surface.brdf.sample(term, u, v);
+  weight_ *= (by_lobe ? surface.material().specular : surface.brdf.diffuse) * sample.weight;
+  ray_ = {surface.lifted(), sample.direction};
   sees_sampled_ = from_camera_ = false;
   turn();
   ++(by_lobe ? rays_.lobe : rays_.gather);

@@ -11,6 +11,8 @@
 #include "raytrace/incoming/incoming_light.h"
 #include "raytrace/light/light_sampler.h"
 #include "raytrace/paths/path_tracer.h"
+#include "scenes/light/shadow_queue.h"
+#include "scenes/reflect/brdf.h"
 
 namespace earthshine::raytrace {
 
@@ -26,13 +28,14 @@ struct PathWorld : scenes::World {
 // Follows one path after another; one object per thread.
 class PathWalker {
  public:
-  explicit PathWalker(const PathWorld& world) : world_(world), radiance_(world.layers) {
+  explicit PathWalker(const PathWorld& world)
+      : world_(world), radiance_(world.layers), shadows_(world.query) {
     if (world.scene.earth) earth_.emplace(world.scene);
   }
 
-  // Which turn of Suns (light/sun_turns.h) the paths that follow carry.
-  void take_turn(std::uint64_t first, std::uint64_t k, std::size_t half) {
-    turn_of_suns_ = world_.lights.turns().turn_of(first, k, half);
+  // Which stratum of Suns (light/sun_strata.h) the paths that follow carry.
+  void select_sun_stratum(std::uint64_t first, std::uint64_t k, std::size_t half) {
+    sun_stratum_ = world_.lights.sun_strata().of_sample(first, k, half);
   }
 
   // Radiance that one path brings, cd/m^2 per layer; valid until the next call. All its random
@@ -56,17 +59,22 @@ class PathWalker {
 
  private:
   struct Surface {
-    const scenes::Material& material;
+    scenes::Brdf brdf;  // its normal on the side that the path arrives from
     Vec3 position;
-    Vec3 outward;   // unit normal of the front
-    Vec3 normal;    // the same on the side that the path arrives from
-    Vec3 mirrored;  // the path's direction reflected
-    bool shines;    // reflects and emits: false inside glass
-    Rgb diffuse;    // k_d there
+    Vec3 outward;  // unit normal of the front
+    bool shines;   // reflects and emits: false inside glass
     std::uint32_t triangle;
     double offset_m;  // of rays that leave it
-    [[nodiscard]] Vec3 lifted() const { return position + offset_m * normal; }
-    [[nodiscard]] bool reflects() const { return shines && material.reflects(); }
+    [[nodiscard]] const scenes::Material& material() const { return brdf.material; }
+    [[nodiscard]] Vec3 lifted() const { return position + offset_m * brdf.normal; }
+    [[nodiscard]] bool reflects() const { return shines && material().reflects(); }
+  };
+
+  // Radiance toward the path by one shadow ray, if nothing is in its way.
+  struct Arriving {
+    Rgb radiance;
+    std::size_t group;
+    scenes::LightKind kind;
   };
 
   void begin(const Ray& start, base::Rng& rng);
@@ -91,13 +99,14 @@ class PathWalker {
     straight_ = true;
     mirrors_ = 0;
   }
-  void scatter(const Surface& surface, bool by_lobe);
+  void scatter(const Surface& surface, scenes::Brdf::Term term);
 
   const PathWorld& world_;
   std::optional<scenes::EarthRadiance> earth_;
   RayCounts rays_;
   base::Rng* rng_ = nullptr;  // of the current path
   std::vector<Rgb> radiance_;
+  scenes::ShadowQueue<Arriving> shadows_;
   Ray ray_;
   Rgb weight_{1.0};
   bool sees_sampled_ = true;  // no shadow ray of the last surface carried the sources' light
@@ -107,7 +116,7 @@ class PathWalker {
   bool at_first_ = false;     // on the way from the camera to what it sees itself
   bool met_surface_ = false;
   double source_luminance_ = 0.0;
-  std::size_t turn_of_suns_ = 0;
+  std::size_t sun_stratum_ = 0;
   RayShare share_;                 // of the last ray, with those aimed at bright patches
   double kept_ = 1.0;              // its part of what the surface sends that it met
   bool goes_straight_on_ = false;  // as before that surface: through glass

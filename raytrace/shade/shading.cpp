@@ -17,6 +17,8 @@ namespace {
 using base::pi;
 using scenes::no_group;
 
+constexpr std::size_t most_shadow_rays = 256;  // that wait to be traced together
+
 }  // namespace
 
 bool gathers_at(const scenes::Scene& scene, const scenes::Hit& hit, GatherRequest& request) {
@@ -38,7 +40,8 @@ PixelShader::PixelShader(const ShadingScene& shared)
       scratch_(shared.layers),
       gather_points_{base::SobolOwen4(base::Key(0, base::Stream::FinalGather, 0)),
                      base::SobolOwen4(base::Key(0, base::Stream::FinalGather, 0))},
-      rng_(base::Key(0, base::Stream::Roulette, 0)) {
+      rng_(base::Key(0, base::Stream::Roulette, 0)),
+      shadows_(shared.query, most_shadow_rays) {
   if (shared.world != nullptr) walker_.emplace(*shared.world);
 }
 
@@ -71,7 +74,7 @@ void PixelShader::add_sample(std::size_t sample, const Ray& ray, const scenes::H
 }
 
 void PixelShader::end_pixel() {
-  trace_shadows();
+  shadows_.trace([this](const Arriving& arriving, const Rgb& share) { take(arriving, share); });
   flush_gather();
 }
 
@@ -145,12 +148,12 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
   if (!hit.front && !material.two_sided && !glass) return;  // the black back
 
   const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
-  const Surface surface{material,
+  const Vec3 normal = hit.front ? outward : -outward, view = -ray.direction;
+  const double cos_view = glm::dot(view, normal);
+  const Surface surface{{material, scenes::diffuse_at(scene, material, hit), normal,
+                         2.0 * cos_view * normal - view, cos_view},
                         scenes::hit_position(scene, hit, ray.origin, ray.direction),
                         outward,
-                        hit.front ? outward : -outward,
-                        -ray.direction,
-                        scenes::diffuse_at(scene, material, hit),
                         shared_.query.offset_m(hit.triangle)};
   const bool shines = hit.front || material.two_sided;
   if (depth == 0 && ((shines && material.reflects()) || material.passes_light_on())) {
@@ -167,7 +170,7 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
       if (seen == Seen::ByCamera && shared_.groups.ambient != no_group) {
         add(shared_.layer[shared_.groups.ambient], sample_,
             depth == 0 ? Part::Indirect : Part::Specular,
-            weight * surface.diffuse * scene.ambient_radiance);
+            weight * surface.brdf.diffuse * scene.ambient_radiance);
       }
       diffuse(surface, hit, weight, depth);
     }
@@ -177,8 +180,6 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
 }
 
 void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weight, int depth) {
-  const Vec3 mirrored =
-      2.0 * glm::dot(surface.view, surface.normal) * surface.normal - surface.view;
   const base::Key light_key =
       base::Key(shared_.lamp_seed, base::Stream::LightSample, pixel_).with(half());
   const auto light_point = [&](std::size_t k) {
@@ -186,45 +187,32 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
   };
   const auto choice = light_point(shared_.lights.count());
   chosen_.clear();
-  const double seen = glm::dot(surface.view, surface.normal);
   // A bound of an even lobe, whose light may come steeper than it is seen.
-  const double most = surface.material.even_lobe ? 1.0 / std::max(seen, 1e-3) : 1.0;
+  const double most =
+      surface.material().even_lobe ? 1.0 / std::max(surface.brdf.cos_view, 1e-3) : 1.0;
   shared_.lights.choose(
-      {surface.position, surface.normal, mirrored, base::max_component(surface.diffuse),
-       most * base::max_component(surface.material.specular), surface.material.shininess},
+      {surface.position, surface.brdf.normal, surface.brdf.mirrored, base::max_component(surface.brdf.diffuse),
+       most * base::max_component(surface.material().specular), surface.material().shininess},
       double(choice[0]) + 0x1p-24 * double(choice[1]), chosen_);
-  std::optional<Vec3> on_sun;  // of the Suns of a sky in parts
-  const auto sample = [&](std::size_t k, const Vec3& point) {
-    if (shared_.lights.is_sun_part(k)) {
-      if (!on_sun) {
-        const auto u = light_point(k);
-        on_sun = shared_.lights.sun_place(double(u[0]), double(u[1]));
-      }
-      return shared_.lights.sample_sun(k, point, *on_sun);
-    }
-    const auto u = shared_.lights.has_extent(k) ? light_point(k) : std::array<float, 2>{};
-    return shared_.lights.sample(k, point, double(u[0]), double(u[1]));
+  std::optional<Vec3> on_sun;
+  const auto take_light = [this](const Arriving& arriving, const Rgb& share) {
+    take(arriving, share);
   };
   const auto reflect = [&](std::size_t k, const Vec3& point, double share) {
-    if (share <= 0.0 || !shared_.lights.may_reach(k, point, surface.normal)) return;
-    const scenes::LightSample light = sample(k, point);
-    const double cosine = glm::dot(light.direction, surface.normal);
+    if (share <= 0.0 || !shared_.lights.may_reach(k, point, surface.brdf.normal)) return;
+    const scenes::LightSample light = shared_.lights.sample(k, point, light_point, on_sun);
+    const double cosine = glm::dot(light.direction, surface.brdf.normal);
     if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) return;
     // L = (E cos / pi) (k_d + k_s cos^n alpha): the measured Phong form.
-    Rgb highlight(0.0);
-    const double cos_alpha = glm::dot(light.direction, mirrored);
-    if (cos_alpha > 0.0 && base::is_lit(surface.material.specular)) {
-      highlight =
-          surface.material.specular * scenes::lobe_at(surface.material, cos_alpha, cosine, seen);
-    }
+    const Rgb highlight = surface.brdf.eval_specular(light.direction, cosine);
     const Rgb incident = weight * light.normal_illuminance_lx * (share * cosine / pi);
-    const Rgb value = incident * (surface.diffuse + highlight);
-    const Vec3 start = point + surface.normal * surface.offset_m;
-    const scenes::ShadowWay way = scenes::shadow_way(light, point, start);
-    if (!base::is_lit(value) || way.reach_m <= 0.0) return;
-    queue_shadow({start, way.direction, way.reach_m, k, value, incident * highlight,
-                  shared_.layer[shared_.lights.group(k)], sample_, depth == 0,
-                  shared_.lights.kind(k), light.mirror});
+    const Rgb value = incident * (surface.brdf.diffuse + highlight);
+    const Vec3 start = point + surface.brdf.normal * surface.offset_m;
+    if (!base::is_lit(value)) return;
+    shadows_.add(light, point, start,
+                 {value, incident * highlight, shared_.layer[shared_.lights.group(k)], sample_,
+                  depth == 0, shared_.lights.kind(k)},
+                 take_light, k);
   };
   std::optional<Footprint> footprint;  // that lamps without size ask for
   for (const auto& [k, chance_weight] : chosen_) {
@@ -232,7 +220,7 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
     if (const Vec3* lamp = depth == 0 ? shared_.lights.lamp_point(k) : nullptr) {
       if (!footprint) {
         footprint.emplace(PixelView{*camera_, shared_.filter, pixel_x_, pixel_y_}, ray,
-                          surface.position, surface.normal, surface.offset_m);
+                          surface.position, surface.brdf.normal, surface.offset_m);
       }
       if (footprint->is_near(*lamp)) {
         places = footprint->toward(*lamp, shared_.query, light_point(k), rng_);
@@ -244,24 +232,16 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
 }
 
 void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
-  const double n = surface.material.shininess;
+  const double n = surface.material().shininess;
   if (n < tuning::sharp_lobe && has_points(depth) && read_lobe(surface, weight)) return;
-  const Vec3 mirrored =
-      2.0 * glm::dot(surface.view, surface.normal) * surface.normal - surface.view;
-  const base::Frame3 frame = base::frame_around(mirrored);
   const Vec3 origin = surface.lifted();
   const int count = depth == 0 ? tuning::lobe_rays : 1;
   for (int k = 0; k < count; ++k) {
-    // Density (n + 1) / (2 pi) cos^n alpha; L = integral L_in (k_s / pi) cos^n cos_theta.
-    const double cos_alpha = std::pow(1.0 - rng_.next(), 1.0 / (n + 1.0));
-    const double sine = std::sqrt(std::max(0.0, 1.0 - cos_alpha * cos_alpha));
-    const double phi = 2.0 * pi * rng_.next();
-    const Vec3 direction = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cos_alpha});
-    const double cosine = glm::dot(direction, surface.normal);
-    if (cosine <= 0.0) continue;
-    const double seen = glm::dot(surface.view, surface.normal);
-    const Rgb value = weight * surface.material.specular *
-                      (scenes::lobe_weight(surface.material, seen, cosine) / count);
+    // L = integral of L_in f cos: k_s times the mean of L_in by the samples' weights.
+    const double u = rng_.next(), v = rng_.next();
+    const auto [direction, share] = surface.brdf.sample(scenes::Brdf::Term::Specular, u, v);
+    if (share <= 0.0) continue;
+    const Rgb value = weight * surface.material().specular * (share / count);
     if (n >= tuning::sharp_lobe) {
       trace({origin, direction}, value, depth + 1, Seen::ByLobe, rays_.lobe);
     } else {
@@ -273,13 +253,13 @@ void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
 
 void PixelShader::mirror_and_glass(const Ray& ray, const Surface& surface, const Rgb& weight,
                                    int depth, Seen seen) {
-  const Vec3 lift = surface.normal * surface.offset_m;
-  Rgb reflected = weight * surface.material.mirror, through(0.0);
+  const Vec3 lift = surface.brdf.normal * surface.offset_m;
+  Rgb reflected = weight * surface.material().mirror, through(0.0);
   Vec3 bent(0.0);
-  if (base::is_lit(surface.material.transmit)) {
-    through = weight * surface.material.transmit;
+  if (base::is_lit(surface.material().transmit)) {
+    through = weight * surface.material().transmit;
     const scenes::Refraction refraction =
-        scenes::refract(surface.material, surface.outward, ray.direction);
+        scenes::refract(surface.material(), surface.outward, ray.direction);
     bent = refraction.direction;
     if (refraction.total) {
       reflected += through;
@@ -297,8 +277,8 @@ void PixelShader::mirror_and_glass(const Ray& ray, const Surface& surface, const
   if (base::is_lit(through))
     trace({surface.position - lift, bent}, through, depth + 1, seen, rays_.refraction);
   if (base::is_lit(reflected)) {
-    if (depth == 0) mirror_ = MirrorPlane{surface.position, surface.normal};
-    trace({surface.position + lift, glm::reflect(ray.direction, surface.normal)}, reflected,
+    if (depth == 0) mirror_ = MirrorPlane{surface.position, surface.brdf.normal};
+    trace({surface.position + lift, glm::reflect(ray.direction, surface.brdf.normal)}, reflected,
           depth + 1, seen, rays_.mirror);
     if (depth == 0) mirror_.reset();
   }

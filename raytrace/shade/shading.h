@@ -13,6 +13,8 @@
 #include "raytrace/frame/options.h"
 #include "raytrace/gather/gather_field.h"
 #include "raytrace/light/light_sampler.h"
+#include "scenes/light/shadow_queue.h"
+#include "scenes/reflect/brdf.h"
 
 namespace earthshine::raytrace {
 
@@ -98,14 +100,12 @@ class PixelShader {
   // What kind of ray asks, which decides what it may see of the sources themselves.
   enum class Seen { ByCamera, ByLobe };
   struct Surface {
-    const scenes::Material& material;
+    scenes::Brdf brdf;
     Vec3 position;
     Vec3 outward;     // unit normal of the front
-    Vec3 normal;      // the same on the side of the viewer
-    Vec3 view;        // unit, toward the viewer
-    Rgb diffuse;      // k_d there
     double offset_m;  // of rays that leave it
-    [[nodiscard]] Vec3 lifted() const { return position + offset_m * normal; }
+    [[nodiscard]] const scenes::Material& material() const { return brdf.material; }
+    [[nodiscard]] Vec3 lifted() const { return position + offset_m * brdf.normal; }
   };
 
   // counter: the kind of ray it is.
@@ -135,18 +135,15 @@ class PixelShader {
   void mirror_and_glass(const Ray& ray, const Surface& surface, const Rgb& weight, int depth,
                         Seen seen);
 
-  struct ShadowRay {
-    Vec3 origin{0.0}, direction{0.0};
-    double reach_m = 0.0;
-    std::size_t light = 0;
-    Rgb value{0.0};     // what it brings if nothing is in its way
+  // What a shadow ray brings if nothing is in its way.
+  struct Arriving {
+    Rgb radiance{0.0};
     Rgb specular{0.0};  // the part of it by a highlight
     std::size_t layer = 0, sample = 0;
     bool by_camera = true;  // at a surface that the camera sees itself
     scenes::LightKind kind = scenes::LightKind::Sun;
-    std::uint32_t mirror = scenes::no_mirror;  // that throws the light
   };
-  void queue_shadow(const ShadowRay& ray);
+  void take(const Arriving& light, const Rgb& share);
   struct GatherRay {
     Vec3 direction{0.0};
     Rgb weight{0.0};
@@ -157,7 +154,6 @@ class PixelShader {
     double lacking = 1.0;      // } how much of that it stands for; 0: it is not followed
   };
   void queue_gather(const Vec3& origin, const GatherRay& ray);
-  void trace_shadows();
   void add_lacking(const GatherRay& ray, const scenes::Hit& hit);
   void flush_gather();
   void add(std::size_t layer, std::size_t sample, Part part, const Rgb& radiance);
@@ -193,7 +189,7 @@ class PixelShader {
   base::Rng rng_;
 
   static constexpr std::size_t width = scenes::RayPacket::width;
-  std::vector<ShadowRay> shadow_rays_;
+  scenes::ShadowQueue<Arriving> shadows_;
   scenes::RayPacket gather_packet_;
   std::array<GatherRay, width> gather_rays_;
   std::size_t gather_count_ = 0;

@@ -10,12 +10,6 @@ namespace earthshine::raytrace {
 
 using base::pi;
 
-namespace {
-
-constexpr std::size_t most_shadow_rays = 256;  // that wait to be traced together
-
-}  // namespace
-
 void PixelShader::diffuse(const Surface& surface, const scenes::Hit& hit, const Rgb& weight,
                           int depth) {
   const bool planned = shared_.diffuse == DiffuseSource::Solution;
@@ -24,7 +18,7 @@ void PixelShader::diffuse(const Surface& surface, const scenes::Hit& hit, const 
     return;
   }
   if (!shared_.gathers) return;
-  const Rgb reflected = weight * surface.diffuse;
+  const Rgb reflected = weight * surface.brdf.diffuse;
   if (has_points(depth) && read_field(surface, reflected)) return;
   gather(surface, reflected, depth);
 }
@@ -39,7 +33,7 @@ void PixelShader::read_solution(const scenes::Hit& hit, const Rgb& weight, int d
 GatherField::Reading PixelShader::read_points(const Surface& surface, Gathered kind) const {
   const GatherField& field = *shared_.field;
   const Vec3 seen = mirror_ ? mirror_->image(surface.position) : surface.position;
-  const Vec3 normal = mirror_ ? glm::reflect(surface.normal, mirror_->normal) : surface.normal;
+  const Vec3 normal = mirror_ ? glm::reflect(surface.brdf.normal, mirror_->normal) : surface.brdf.normal;
   const Sighting place{glm::vec3(seen - shared_.sighting_origin), glm::vec3(normal),
                        mirror_.has_value()};
   std::size_t own = field.find(x_, y_, place);
@@ -75,10 +69,10 @@ bool PixelShader::read_lobe(const Surface& surface, const Rgb& weight) {
   const GatherField::Reading read = read_points(surface, Gathered::Lobe);
   if (read.count == 0) return false;
   const std::uint32_t material = shared_.field->points()[read.point[0]].material;
-  if (&shared_.scene.materials[material] != &surface.material) return false;
+  if (&shared_.scene.materials[material] != &surface.material()) return false;
   if (shared_.field->points()[read.point[0]].lobe <= 0.0F) return false;
   for (std::size_t k = 0; k < read.count; ++k) {
-    const Rgb part = weight * surface.material.specular * double(read.weight[k]);
+    const Rgb part = weight * surface.material().specular * double(read.weight[k]);
     term_of(read.point[k]).lobe += glm::vec3(part);
     count_read(shared_.field->lobe_sum(read.point[k]), part);
   }
@@ -86,7 +80,7 @@ bool PixelShader::read_lobe(const Surface& surface, const Rgb& weight) {
 }
 
 void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
-  const base::Frame3 frame = base::frame_around(surface.normal);
+  const base::Frame3 frame = base::frame_around(surface.brdf.normal);
   const Vec3 origin = surface.lifted();
   const int count = depth > 0       ? tuning::rays_behind_mirror
                     : shared_.field ? tuning::rays_without_point
@@ -96,7 +90,7 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   ray.sample = sample_;
   ray.part = depth == 0 ? Part::Indirect : Part::Specular;
   ray.share.found_rays = count;
-  ray.share.from = {origin, surface.normal};
+  ray.share.from = {origin, surface.brdf.normal};
   // Cosine-distributed rays: L = (k_d / pi) integral L_in cos = k_d mean(L_in).
   ray.weight = weight / static_cast<double>(count);
   rays_.gather += static_cast<std::uint64_t>(count);
@@ -120,7 +114,7 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   if (!shares) return;
   const double choice = rng_.next(), x = rng_.next(), y = rng_.next();
   const IncomingLight::Aimed aimed =
-      shared_.incoming.aim({origin, surface.normal}, choice, x, y, count, 1.0);
+      shared_.incoming.aim({origin, surface.brdf.normal}, choice, x, y, count, 1.0);
   if (aimed.weight <= 0.0) return;
   ++rays_.gather;
   ray.direction = aimed.direction;
@@ -131,40 +125,16 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   queue_gather(origin, ray);
 }
 
-void PixelShader::queue_shadow(const ShadowRay& ray) {
-  shadow_rays_.push_back(ray);
-  if (shadow_rays_.size() == most_shadow_rays) trace_shadows();
-}
-
-// Those to one light side by side: they go the same way.
-void PixelShader::trace_shadows() {
-  std::stable_sort(shadow_rays_.begin(), shadow_rays_.end(),
-                   [](const ShadowRay& a, const ShadowRay& b) { return a.light < b.light; });
-  scenes::RayPacket packet;
-  std::array<std::uint32_t, width> mirrors;
-  std::array<Rgb, width> shares;
-  for (std::size_t first = 0; first < shadow_rays_.size(); first += width) {
-    const std::size_t count = std::min(width, shadow_rays_.size() - first);
-    for (std::size_t k = 0; k < count; ++k) {
-      const ShadowRay& ray = shadow_rays_[first + k];
-      shared_.query.set(packet, k, ray.origin, ray.direction, ray.reach_m);
-      mirrors[k] = ray.mirror;
-    }
-    shared_.query.light_shares(packet, mirrors.data(), count, shares.data());
-    for (std::size_t k = 0; k < count; ++k) {
-      const ShadowRay& ray = shadow_rays_[first + k];
-      rays_.add_shadow(ray.kind);
-      if (base::max_component(shares[k]) <= 0.0) continue;
-      add(ray.layer, ray.sample, ray.by_camera ? Part::Direct : Part::Specular,
-          shares[k] * ray.value);
-      if (shared_.splits_parts && ray.by_camera) {
-        const Rgb specular = shares[k] * ray.specular;
-        sums_[shared_.layers + static_cast<std::size_t>(Part::Direct)] -= specular;
-        sums_[shared_.layers + static_cast<std::size_t>(Part::Specular)] += specular;
-      }
-    }
+void PixelShader::take(const Arriving& light, const Rgb& share) {
+  rays_.add_shadow(light.kind);
+  if (base::max_component(share) <= 0.0) return;
+  add(light.layer, light.sample, light.by_camera ? Part::Direct : Part::Specular,
+      share * light.radiance);
+  if (shared_.splits_parts && light.by_camera) {
+    const Rgb specular = share * light.specular;
+    sums_[shared_.layers + static_cast<std::size_t>(Part::Direct)] -= specular;
+    sums_[shared_.layers + static_cast<std::size_t>(Part::Specular)] += specular;
   }
-  shadow_rays_.clear();
 }
 
 void PixelShader::queue_gather(const Vec3& origin, const GatherRay& ray) {
@@ -177,7 +147,7 @@ void PixelShader::queue_gather(const Vec3& origin, const GatherRay& ray) {
 void PixelShader::add_lacking(const GatherRay& ray, const scenes::Hit& hit) {
   base::Rng rng(
       base::Key(shared_.seed, base::Stream::Residual, pixel_).with(ray.sample).with(ray.number));
-  walker_->take_turn(pixel_ + ray.number, ray.sample / 2, ray.sample % 2);
+  walker_->select_sun_stratum(pixel_ + ray.number, ray.sample / 2, ray.sample % 2);
   const auto lacking =
       walker_->residual(shared_.incoming, {Vec3(0.0), ray.direction}, hit, ray.share, rng);
   for (std::size_t layer = 0; layer < shared_.layers; ++layer) {

@@ -10,7 +10,7 @@
 #include "raytrace/tuning.h"
 #include "scenes/effects/shining.h"
 #include "scenes/light/narrow_beams.h"
-#include "scenes/reflect/specular.h"
+#include "scenes/reflect/brdf.h"
 #include "scenes/sky/sky_cells.h"
 
 namespace earthshine::raytrace {
@@ -296,7 +296,9 @@ void ImageFinder::add_highlight(const Facet& facet, const Source& source, const 
   const Vec3 to_camera = camera_.position - at;
   const double camera_m = glm::length(to_camera);
   const Vec3 out = to_camera / camera_m;
-  const Vec3 mirrored = 2.0 * glm::dot(out, facet.normal) * facet.normal - out;
+  const double seen = glm::dot(out, facet.normal);
+  const scenes::Brdf brdf{*facet.material, Rgb(0.0), facet.normal, 2.0 * seen * facet.normal - out,
+                          seen};
   const Vec3 way = source.is_distant ? source.middle : source.middle - at;
   const double source_m =
       source.is_distant ? std::numeric_limits<double>::infinity() : glm::length(way);
@@ -304,11 +306,11 @@ void ImageFinder::add_highlight(const Facet& facet, const Source& source, const 
   const double angle = source.is_distant ? source.angle_rad : source.radius_m / source_m;
   const double lobe_variance = 1.0 / facet.material->shininess;
   const double variance = lobe_variance + 0.25 * angle * angle;
-  const double off2 = 2.0 * (1.0 - glm::dot(in, mirrored));  // of the angle, squared
+  const double off2 = 2.0 * (1.0 - glm::dot(in, brdf.mirrored));  // of the angle, squared
   const double cosine = glm::dot(in, facet.normal);
   if (off2 > tuning::most_deviations2 * variance || cosine <= 0.0) return;
   const double lobe = lobe_variance / variance * std::exp(-0.5 * off2 / variance) *
-                      scenes::lobe_at(*facet.material, 1.0, cosine, glm::dot(out, facet.normal));
+                      base::luminance(brdf.eval_specular(brdf.mirrored, cosine));
   Spot spot = scene_.spot_at(at, 0.0);
   // Seen from the camera, the angle at the lobe turns by more than the view does.
   const double turn = 1.0 + camera_m / source_m;
@@ -317,7 +319,7 @@ void ImageFinder::add_highlight(const Facet& facet, const Source& source, const 
       std::min(lobe_px2, facet.area_m2 * camera_.film_per_m2(camera_.position, at, facet.normal));
   spot.radius_px = std::sqrt(spot.area_px2 / pi);
   spot.luminance =
-      source.illuminance(at) * cosine / pi * lobe * base::luminance(facet.material->specular);
+      source.illuminance(at) * cosine / pi * lobe;
   add_visible(facet, source, at, spot, lit_);
 }
 

@@ -7,6 +7,7 @@
 #include "raytrace/tuning.h"
 #include "raytrace/witness/strip_width.h"
 #include "raytrace/witness/strips.h"
+#include "scenes/reflect/brdf.h"
 #include "scenes/reflect/specular.h"
 #include "scenes/triangle_point.h"
 
@@ -93,7 +94,7 @@ class LightStrips {
       if (!source.is_distant && source.radius_m > tuning::widest * diagonal_m_) continue;
       views_.push_back({&source, nullptr, scenes::no_mirror, source.is_distant, source.middle});
       std::uint32_t number = 0;
-      for (const scenes::FlatMirror& mirror : shared_.query.ways().mirrors()) {
+      for (const scenes::FlatMirror& mirror : shared_.query.specular_paths().mirrors()) {
         const bool reaches = source.is_distant ? glm::dot(source.middle, mirror.normal) > 0.0
                                                : mirror.height_m(source.middle) > 0.0;
         if (reaches) {
@@ -153,12 +154,9 @@ class LightStrips {
     }
     const Vec3 source_sees = view.mirror != nullptr ? view.mirror->image(at.position) : at.position;
     const double light = view.source->illuminance(source_sees) * cosine / pi;
-    const double cos_alpha = glm::dot(2.0 * seen * at.normal - out, in);
-    double reflected = base::luminance(at.material->diffuse);
-    if (cos_alpha > 0.0 && base::is_lit(at.material->specular)) {
-      reflected += base::luminance(at.material->specular) *
-                   scenes::lobe_at(*at.material, cos_alpha, cosine, seen);
-    }
+    const scenes::Brdf brdf{*at.material, at.material->diffuse, at.normal,
+                            2.0 * seen * at.normal - out, seen};
+    const double reflected = base::luminance(brdf.eval(in, cosine));
     if (light * reflected <= scene_.least) return 0.0;
     const Vec3 start = at.position + at.offset_m * at.normal;
     const double in_view = scene_.share(start, glm::normalize(camera_.position - start),

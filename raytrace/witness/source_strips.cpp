@@ -50,7 +50,7 @@ class SourceStrips {
       const double radius =
           source.is_distant ? far_m * std::tan(source.angle_rad) : source.radius_m;
       cover(at, radius);
-      for (const scenes::FlatMirror& mirror : shared_.query.ways().mirrors()) {
+      for (const scenes::FlatMirror& mirror : shared_.query.specular_paths().mirrors()) {
         if (mirror.height_m(camera_.position) > 0.0) cover(mirror.image(at), radius);
       }
     }

@@ -6,6 +6,7 @@
 
 #include "scenes/light/solid_angle.h"
 #include "scenes/ray_query.h"
+#include "scenes/reflect/brdf.h"
 #include "scenes/surface_texture.h"
 #include "scenes/triangle_point.h"
 

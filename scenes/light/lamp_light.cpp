@@ -7,6 +7,7 @@
 
 #include "scenes/light/emitters.h"
 #include "scenes/light/photometry.h"
+#include "scenes/reflect/brdf.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -74,7 +75,7 @@ double relative_intensity(const Lamp& lamp, const Vec3& direction) {
 
 }  // namespace
 
-ShadowWay shadow_way(const LightSample& sample, const Vec3& point, const Vec3& origin) {
+ShadowSegment shadow_segment(const LightSample& sample, const Vec3& point, const Vec3& origin) {
   constexpr double short_of_it = 1e-5;
   if (!std::isfinite(sample.distance_m)) return {sample.direction, sample.distance_m};
   const Vec3 way = point + sample.distance_m * sample.direction + sample.lift_m - origin;
@@ -192,11 +193,6 @@ std::optional<LampHit> hit_lamp(const Lamp& lamp, const Vec3& origin, const Vec3
     if (std::abs(a) > 0.5 || std::abs(b) > 0.5) return std::nullopt;
   }
   return LampHit{t, lamp.exitance / pi};
-}
-
-Vec3 cosine_direction(const base::Frame3& frame, double x, double y) {
-  const double r = std::sqrt(x), phi = 2.0 * pi * y;
-  return frame.to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0, 1.0 - x))});
 }
 
 // 1 - cos written as 2 sin^2 keeps its digits for the Sun's small disc.

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string_view>
 
-#include "scenes/light_ways.h"
 #include "scenes/scene.h"
+#include "scenes/specular_paths.h"
 
 namespace earthshine::scenes {
 
@@ -24,12 +24,12 @@ struct LightSample {
 // The shadow ray of a point's sample that starts at `origin`, off the point's surface: it goes to
 // the same place of the source, or its image in a mirror, and stops short of it, which may be a
 // surface of the scene. reach_m is 0 where the source is at the point.
-struct ShadowWay {
+struct ShadowSegment {
   Vec3 direction{0.0};
   double reach_m = 0.0;
 };
-[[nodiscard]] ShadowWay shadow_way(const LightSample& sample, const Vec3& point,
-                                   const Vec3& origin);
+[[nodiscard]] ShadowSegment shadow_segment(const LightSample& sample, const Vec3& point,
+                                           const Vec3& origin);
 
 // The cosine of half the field, beyond which a spot lamp sends nothing.
 [[nodiscard]] double field_cosine(const Lamp& lamp);
@@ -74,9 +74,6 @@ struct LampHit {
 };
 [[nodiscard]] std::optional<LampHit> hit_lamp(const Lamp& lamp, const Vec3& origin,
                                               const Vec3& direction);
-
-// A direction with density cos / pi about frame.normal.
-[[nodiscard]] Vec3 cosine_direction(const base::Frame3& frame, double x, double y);
 
 // Light that reaches a point from a distant disc of directions, sampled uniformly over its solid
 // angle.

@@ -12,6 +12,7 @@
 #include "base/numbers/random.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/plausible/views.h"
+#include "scenes/reflect/brdf.h"
 #include "scenes/text/message_text.h"
 #include "scenes/triangle_point.h"
 

@@ -12,14 +12,14 @@ namespace {
 
 constexpr double rounding = 1e-9;
 
-Rgb lobe_of(const Material& material) {
+}  // namespace
+
+Rgb lobe_albedo(const Material& material) {
   return material.specular * (2.0 / (material.shininess + 2.0));
 }
 
-}  // namespace
-
 Rgb reflected_share(const Material& material) {
-  return material.diffuse + lobe_of(material) + material.mirror + material.transmit;
+  return material.diffuse + lobe_albedo(material) + material.mirror + material.transmit;
 }
 
 double conserve_energy(Material& material) {
@@ -32,7 +32,7 @@ double conserve_energy(Material& material) {
 }
 
 void check_energy(const Material& material, const base::Location& where, const std::string& what) {
-  const Rgb lobe = lobe_of(material);
+  const Rgb lobe = lobe_albedo(material);
   const Rgb total = reflected_share(material);
   for (int c = 0; c < 3; ++c) {
     if (total[c] <= 1.0 + rounding) continue;

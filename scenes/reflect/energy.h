@@ -14,6 +14,9 @@ namespace earthshine::scenes {
 // at `where` that gives the numbers. `what` names the material in the message.
 void check_energy(const Material& material, const base::Location& where, const std::string& what);
 
+// Of light along the normal, the share that the lobe reflects: 2 k_s / (n + 2).
+[[nodiscard]] Rgb lobe_albedo(const Material& material);
+
 // What it sends on of the light that arrives: the sum above.
 [[nodiscard]] Rgb reflected_share(const Material& material);
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "scenes/light_ways.h"
+#include "scenes/specular_paths.h"
 
 namespace earthshine::scenes {
 bool any_passes_light_on(const Scene& scene) {

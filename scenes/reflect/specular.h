@@ -2,11 +2,9 @@
 // Where light goes on from a mirror or glass.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
 #include "scenes/ray_query.h"
 #include "scenes/scene.h"
+#include "scenes/specular_paths.h"
 
 namespace earthshine::scenes {
 
@@ -39,18 +37,22 @@ struct SpecularStep {
 [[nodiscard]] SpecularStep specular_step(const Scene& scene, const Hit& hit, const Vec3& direction,
                                          double offset_m, bool aimed = false);
 
-// The lobe's shape, times k_s: cos^n alpha, over the larger cosine to the normal where the material
-// has an even lobe. cos_in, cos_out: of the two directions, above 0.
-[[nodiscard]] inline double lobe_at(const Material& material, double cos_alpha, double cos_in,
-                                    double cos_out) {
-  const double lobe = std::pow(cos_alpha, material.shininess);
-  return material.even_lobe ? lobe / std::max(cos_in, cos_out) : lobe;
-}
-// The lobe times the cosine of the direction drawn by the density (n + 1) cos^n alpha / (2 pi), over
-// that density and pi: what a ray along it weighs.
-[[nodiscard]] inline double lobe_weight(const Material& material, double cos_in, double cos_out) {
-  const double cosine = material.even_lobe ? cos_out / std::max(cos_in, cos_out) : cos_out;
-  return 2.0 * cosine / (material.shininess + 1.0);
+// Mirrors and panes that a ray is followed through at most.
+inline constexpr int most_specular_steps = 64;
+
+// Follows a ray from a hit along specular_step(): visit(hit, direction, step) for that hit, with
+// step 0, and for what is met after each step (a miss, too), until it returns false. straight_only:
+// ends where the ray would turn.
+template <class Visit>
+void follow_specular(const Scene& scene, const RayQuery& query, Hit hit, Vec3 direction,
+                     bool straight_only, const Visit& visit) {
+  for (int step = 0; visit(hit, direction, step); ++step) {
+    const SpecularStep on =
+        specular_step(scene, hit, direction, query.offset_m(hit.triangle), straight_only);
+    if (straight_only && !goes_straight_on(direction, on.direction)) return;
+    direction = on.direction;
+    hit = query.closest(on.origin, direction);
+  }
 }
 
 }  // namespace earthshine::scenes

@@ -5,11 +5,11 @@
 
 #include "base/parallel.h"
 #include "radiosity/bodies/walls.h"
+#include "raytrace/error_budget.h"
+#include "raytrace/solve_control/wanted_error.h"
 #include "scenes/effects/culling.h"
 #include "scenes/effects/quality.h"
 #include "studies/cost/memory.h"
-#include "studies/error/error_budget.h"
-#include "studies/steer/wanted_error.h"
 
 namespace earthshine::studies {
 namespace {
@@ -130,7 +130,7 @@ void add_picture(StepResult& result, const Work& work, const raytrace::Frame& fr
   }
   cost.memory_bytes = memory_of(work.asked.world, solver, options, solution);
   const Clock statement;
-  cost.stated = error_budget(work.asked.world, {&work.view.camera, options}, frame).total;
+  cost.stated = raytrace::error_budget(work.asked.world, {&work.view.camera, options}, frame).total;
   cost.statement_cpu_seconds = statement.cpu();
 }
 
@@ -171,7 +171,8 @@ std::optional<StepResult> run_plain(const Work& work, SolutionShelf& shelf) {
 // as wanted. The statements that decide about that are part of the cost.
 std::optional<StepResult> run_steered(const Work& work) {
   const auto& [study, view, step, asked, progress] = work;
-  const radiosity::SolveOptions solver = picture_solver(study.scene, step.quality, view.seed);
+  const radiosity::SolveOptions solver =
+      raytrace::picture_solver(study.scene, step.quality, view.seed);
   raytrace::RenderOptions options = picture_of(study, view, step);
   options.error = *step.quality.error;
   const Clock clock;

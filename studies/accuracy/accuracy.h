@@ -18,11 +18,11 @@
 #include <optional>
 #include <vector>
 
+#include "raytrace/frame/error_estimate.h"
 #include "raytrace/paths/path_tracer.h"
+#include "raytrace/render.h"
 #include "studies/accuracy/ladder.h"
-#include "studies/error/error_estimate.h"
-#include "studies/error/picture_error.h"
-#include "studies/study.h"
+#include "studies/picture_error.h"
 
 namespace earthshine::studies {
 
@@ -49,7 +49,7 @@ struct StepCost {
   int form_factor_rays = 0, gather_rays = 0;  // per patch, per pixel
   double camera_samples = 0.0;                // per pixel, mean
   double memory_bytes = 0.0;                  // memory.h, for the patches and rows it had
-  ErrorEstimate stated;  // the error as the picture itself states it (error_budget.h)
+  raytrace::ErrorEstimate stated;  // the error as the picture itself states it (error_budget.h)
   // CPU seconds that this took; not in the above, but of settings that were chosen by it.
   double statement_cpu_seconds = 0.0;
 };

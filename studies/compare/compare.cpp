@@ -36,7 +36,7 @@ bool has_wide_sources(const scenes::World& study) {
 class Comparing {
  public:
   Comparing(const scenes::World& study, const scenes::Camera& camera, const CompareOptions& options,
-            const StageListener& listen)
+            const raytrace::StageListener& listen)
       : study_(study), camera_(camera), options_(options), listen_(listen) {}
 
   Comparison run() {
@@ -175,7 +175,7 @@ class Comparing {
   const scenes::World& study_;
   const scenes::Camera& camera_;
   const CompareOptions& options_;
-  const StageListener& listen_;
+  const raytrace::StageListener& listen_;
   ReferencePair pair_, reflected_;  // of all light; without that straight from the sources
   std::vector<float> mean_, mean_reflected_;  // luminance of the pairs' means
   std::vector<bool> counted_;                 // pixels of `reflected_`
@@ -185,7 +185,7 @@ class Comparing {
 }  // namespace
 
 Comparison compare(const scenes::World& study, const scenes::Camera& camera,
-                   const CompareOptions& options, const StageListener& listen) {
+                   const CompareOptions& options, const raytrace::StageListener& listen) {
   return Comparing(study, camera, options, listen).run();
 }
 

@@ -15,8 +15,7 @@
 #include <vector>
 
 #include "raytrace/render.h"
-#include "studies/error/picture_error.h"
-#include "studies/study.h"
+#include "studies/picture_error.h"
 #include "studies/targets/target_light.h"
 
 namespace earthshine::studies {
@@ -101,7 +100,8 @@ struct Comparison {
 // Seconds apart, the same values for the same options and seed on any number of threads. Throws as
 // compare_methods and raytrace::earth_area do.
 [[nodiscard]] Comparison compare(const scenes::World& scene, const scenes::Camera& camera,
-                                 const CompareOptions& options, const StageListener& listen = {});
+                                 const CompareOptions& options,
+                                 const raytrace::StageListener& listen = {});
 
 // The share of the counted pixels that are off by more than misleading_factor, up or down.
 [[nodiscard]] double off_share(const std::vector<float>& luminance,

@@ -45,7 +45,7 @@ struct MemoryCase {
   int ranks = 1;               // that divide the entries of the matrix among them
   bool has_mpi = false;        // earthshine-mpi, by mpirun
   bool first_rank = true;      // which iterates for all (radiosity/linear_solve.h)
-  bool states_error = false;   // of the solution, over all surfaces (studies/surfaces)
+  bool states_error = false;   // of the solution, over all surfaces (raytrace/surfaces)
   std::size_t pixels = 0;      // 0: no picture
   std::size_t channels = 0;    // of the picture, 4 bytes each
   std::size_t layers = 0;      // that read the solution: 1, or the light groups

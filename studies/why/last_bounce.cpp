@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "radiosity/direct/sources.h"
 #include "scenes/light/lamp_light.h"
+#include "scenes/reflect/brdf.h"
 #include "scenes/sky/sky.h"
 #include "scenes/surface_texture.h"
 

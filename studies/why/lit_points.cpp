@@ -27,8 +27,8 @@ Beam no_beam(const SeenPoint&, int) { return {}; }
 std::uint32_t blocker_of(const scenes::Scene& scene, const scenes::RayQuery& query,
                          const SeenPoint& point, const Beam& light) {
   const Vec3 origin = point.lifted();
-  const scenes::ShadowWay way =
-      scenes::shadow_way({light.direction, light.distance_m}, point.position, origin);
+  const scenes::ShadowSegment way =
+      scenes::shadow_segment({light.direction, light.distance_m}, point.position, origin);
   const scenes::Hit hit = query.closest(origin, way.direction);
   // A lamp's own surface, at the end of the way, is not in it.
   if (hit.missed() || !(hit.t < way.reach_m * (1.0 - 1e-4))) return EarthBlockers::none;

@@ -4,7 +4,6 @@
 
 #include "radiosity/solution.h"
 #include "raytrace/render.h"
-#include "studies/study.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::tests {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "raytrace/solve_control/reach_surfaces.h"
 #include "scenes/effects/quality.h"
-#include "studies/steer/reach_surfaces.h"
 #include "tests/support/scene_builder.h"
 #include "tests/validation/cie_cases.h"
 #include "tests/validation/tables.h"
@@ -24,9 +24,9 @@ radiosity::SolveReport solve(scenes::Scene scene, std::uint64_t seed) {
   if (!made.effects.solution) {
     return made.solve(radiosity::solve_options(scenes::resolve_quality(scene), seed)).report;
   }
-  studies::Wanted wanted;
+  raytrace::Wanted wanted;
   wanted.error = wanted_error;
-  return studies::reach_surfaces(made, wanted, seed, {}).solution.report;
+  return raytrace::reach_surfaces(made, wanted, seed, {}).solution.report;
 }
 
 // Error relative to the right value or, if this is 0, to the largest value of the case.

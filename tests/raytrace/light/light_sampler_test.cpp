@@ -203,7 +203,7 @@ TEST(LightSampler, NoSunIsLeftOutThatAMirrorThrows) {
     builder.scene.sun = sun;
     const tests::Prepared prepared(builder.scene);
     const LightSampler lights(prepared, Indirect::None, 1, false, std::nullopt,
-                              prepared.query.ways().mirrors());
+                              prepared.query.specular_paths().mirrors());
     ASSERT_EQ(lights.count(), 2U);  // it and its image
     for (int n = 0; n < 20000; ++n) {
       const double x = rng.next(), y = rng.next(), z = rng.next();

@@ -136,10 +136,10 @@ TEST(ThrownLight, EachSideOfASheetKeepsItsOwn) {
   sheet.two_sided = true;
   scene.plate(scene.material(mirror(0.6)), 10.0, 0.0, true);
   scene.quad(scene.material(sheet), {20, 0, 0}, {21, 0, 0}, {21, 1, 0}, {20, 1, 0});
-  const scenes::LightWays ways(scene.scene, scenes::SurfaceOffsets(scene.scene));
-  ASSERT_EQ(ways.mirrors().size(), 1U);  // the sheet's back has 1 of 102 m^2
-  EXPECT_NEAR(ways.kept(2, true).g, 0.4, 1e-12);
-  EXPECT_EQ(ways.kept(2, false).g, 1.0);
+  const scenes::SpecularPaths paths(scene.scene, scenes::SurfaceOffsets(scene.scene));
+  ASSERT_EQ(paths.mirrors().size(), 1U);  // the sheet's back has 1 of 102 m^2
+  EXPECT_NEAR(paths.kept(2, true).g, 0.4, 1e-12);
+  EXPECT_EQ(paths.kept(2, false).g, 1.0);
 }
 
 TEST(ThrownLight, CrowdOfLampsIsThrownToo) {

@@ -4,8 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
-#include "scenes/light_ways.h"
+#include "scenes/specular_paths.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::scenes {
@@ -73,6 +74,32 @@ TEST(Specular, StepThroughGlassGoesOnBelow) {
   EXPECT_NEAR(step.origin.z, -1e-6, 1e-18);
   EXPECT_NEAR(step.direction.x, std::sqrt(0.5) / 1.5, 1e-15);  // Snell's law
   EXPECT_LT(step.direction.z, 0.0);
+}
+
+// Between two mirrors that face each other a ray never ends: the visitor ends it. A ray that may only
+// go straight on ends at the first.
+TEST(Specular, ARayIsFollowedUntilItsVisitorEndsIt) {
+  tests::SceneBuilder builder;
+  Material mirror = tests::grey(0.0);
+  mirror.mirror = Rgb(0.9);
+  const std::uint32_t m = builder.material(mirror);
+  builder.plate(m, 1.0, 0.0, true);
+  builder.plate(m, 1.0, 1.0, false);
+  const RayQuery query(builder.scene);
+  const Vec3 down(0, 0, -1);
+  const Hit first = query.closest({0.1, 0.2, 0.5}, down);
+  std::vector<double> along;
+  const auto visit = [&](const Hit& hit, const Vec3& direction, int step) {
+    EXPECT_FALSE(hit.missed());
+    EXPECT_EQ(static_cast<std::size_t>(step), along.size());
+    along.push_back(direction.z);
+    return step < 3;
+  };
+  follow_specular(builder.scene, query, first, down, false, visit);
+  EXPECT_EQ(along, (std::vector<double>{-1.0, 1.0, -1.0, 1.0}));
+  along.clear();
+  follow_specular(builder.scene, query, first, down, true, visit);
+  EXPECT_EQ(along, (std::vector<double>{-1.0}));
 }
 
 }  // namespace

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far off a value may be that was found by chance.
+#pragma once
+
+#include <cmath>
+
+namespace earthshine::raytrace {
+
+// A part of an error, relative to the mean of what it is an error of.
+struct ErrorEstimate {
+  double estimate = 0.0;  // root mean square
+  double bound_95 = 0.0;  // exceeded once in twenty times
+};
+
+// Errors of independent causes.
+[[nodiscard]] inline ErrorEstimate operator+(const ErrorEstimate& a, const ErrorEstimate& b) {
+  return {std::hypot(a.estimate, b.estimate), std::hypot(a.bound_95, b.bound_95)};
+}
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/solve_control/reach_surfaces.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "radiosity/fill_solution.h"
+#include "radiosity/near_lamps.h"
+#include "raytrace/light/uncaught_light.h"
+#include "raytrace/solve_control/surface_rounds.h"
+#include "raytrace/surfaces/residual_error.h"
+#include "scenes/text/message_text.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+// Of the wanted error: what samples are to leave, and cuts, of which samples see a part.
+constexpr double aim = 0.85, cut_aim = 0.25;
+// The error supposed at first; the share of the stated one that a pass cuts for.
+constexpr double first_error = 0.15, next_error = 0.2;
+constexpr double noise_share = 0.4;  // of the wanted squared error, left to the rays
+constexpr std::uint64_t many_rays = std::uint64_t{1} << 28;
+constexpr double most_growth = 4.0;                        // of the rays of a pass
+constexpr double cut_share = 0.6;                          // to what is uneven within patches
+constexpr std::size_t largest_cut = std::size_t{1} << 21;  // patches
+constexpr int most_idle = 2;                               // a single pass may look worse by chance
+constexpr double next_pass = 1.2;                          // of the time that the one before took
+constexpr double more_points_share = 0.5;                  // of a time limit: no more points then
+constexpr double fewest_points = 8192.0, most_points = 1 << 20;
+constexpr double most_standard_error = 0.3;  // of the wanted squared error, as a standard error
+
+constexpr int coarse_rays = 64;
+constexpr double coarse_error = 0.2;  // that the first cut is meant for
+
+double squared(double x) { return x * x; }
+
+class SurfaceSearch {
+ public:
+  SurfaceSearch(const scenes::World& scene, const Wanted& wanted, std::uint64_t seed,
+                const SolveListener& listen, const StageListener& progress)
+      : scene_(scene),
+        wanted_(wanted),
+        given_(scene.scene.quality),
+        listen_(listen),
+        progress_(progress) {
+    result_.solver = first_surface_options(scene.scene, wanted.error, seed);
+    result_.surface.known = false;
+    solve(seed);
+  }
+
+  SteeredSolution run() {
+    if (!light_) return std::move(result_);
+    rounds_->set_mean(light_->told_mean());
+    try {
+      if (rounds_->mean() <= 0.0) rounds_->find_light();
+      if (rounds_->mean() > 0.0) {
+        std::vector<std::uint32_t> parent(light_->patches().count());
+        if (may_cut()) rounds_->cut_shadows(cut_share * enough(), parent);
+        improve();
+        if (may_cast() && is_exact()) return with_exact_form_factors();
+      }
+    } catch (const base::Stopped&) {
+      stop(Limit::Stopped);
+    }
+    auto [solution, lacks] = light_->finished();
+    result_.solution = std::move(solution);
+    result_.solution.report.shadow_rays += rounds_->rays();
+    hold_to_ledger(lacks);
+    return std::move(result_);
+  }
+
+ private:
+  // Light that no ray finds again, as of a small spot beside a lamp that mirrors alone show, is
+  // missing from all samples alike: the mean is off by what it `lacks`, and the error is no less.
+  void hold_to_ledger(double lacks) {
+    const double stated = result_.surface.parts.total().estimate;
+    if (result_.steps.empty() || lacks <= stated) return;
+    const double more = std::sqrt(squared(lacks) - squared(stated));
+    result_.surface.parts.form_factors =
+        result_.surface.parts.form_factors + ErrorEstimate{more, more};
+    result_.steps.back().estimate = lacks;
+    if (lacks > wanted_.error && result_.limit == Limit::None) stop(Limit::Ledger);
+  }
+
+  // Of ranks that divide the form factors the first decides, and the others sample with it.
+  [[nodiscard]] bool joins() const { return light_->shares().joins(); }
+  [[nodiscard]] bool may_cut() const { return cuts_surfaces(given_); }
+  [[nodiscard]] bool may_cast() const { return !given_.form_factor_rays; }
+  // What reflects was lit by shadow rays alone, and evenly.
+  [[nodiscard]] bool is_exact() const {
+    return result_.steps.size() == 1 && result_.steps.back().estimate == 0.0 &&
+           light_->patches().count() == first_patches_;
+  }
+  // Light that lands where nothing reflects is still only as exact as the form factors: as many
+  // rays as the error wants of any scene.
+  SteeredSolution with_exact_form_factors() {
+    if (const Progress progress = stage("solve")) progress(0, 1);
+    radiosity::SolveOptions solver = result_.solver;
+    solver.form_factor_rays = scenes::resolve_quality(scene_.scene).form_factor_rays;
+    const base::StopInForce stop(wanted_.stop);
+    result_.solution = radiosity::solve(scene_, solver);
+    result_.solver = solver;
+    result_.steps.back().form_factor_rays = solver.form_factor_rays;
+    if (listen_) listen_(result_.solution.report);
+    result_.solution.report.shadow_rays += rounds_->rays();
+    return std::move(result_);
+  }
+
+  void solve(std::uint64_t seed) {
+    const Progress progress = stage("solve");
+    if (progress) progress(0, 1);
+    radiosity::Patches patches =
+        radiosity::subdivide_near_lamps(scene_.scene, result_.solver.patch_edge_m);
+    radiosity::FormFactors factors;
+    radiosity::Solution coarse =
+        radiosity::solve_keeping(scene_, result_.solver, std::move(patches), {}, factors);
+    if (listen_) listen_(coarse.report);
+    if (coarse.columns == 0 || coarse.patches.count() == 0) {
+      result_.solution = std::move(coarse);
+      return;
+    }
+    first_patches_ = coarse.patches.count();
+    bound_ = patch_bound(wanted_, given_, first_patches_, largest_cut);
+    solver_error_ = coarse.report.solver_error;
+    light_.emplace(scene_, std::move(coarse), std::move(factors), result_.solver.form_factor_rays);
+    rounds_.emplace(scene_, wanted_, seed, *light_, bound_.most, progress_);
+  }
+
+  void improve() {
+    double before = 0.0;
+    int idle = 0;  // passes in a row that cut nothing and brought nothing
+    SurfaceRefiner choice(light_->patches(), light_->light().spot_m2);
+    std::vector<SampleBudget> budget = even_budget(*light_, points_wanted_);
+    double pass_begun = time_gone();
+    for (int pass = 0;; ++pass) {
+      std::vector<std::uint32_t> all(light_->patches().count());
+      std::iota(all.begin(), all.end(), 0U);
+      const double begun = time_gone();
+      const SurfaceSamples samples = rounds_->sample(
+          all, budget, under_way(), may_cast() ? SamplesOf::Light : SamplesOf::Residual);
+      last_took_ = time_gone() - begun;
+      std::vector<double> variance;
+      LightNoise noise;
+      if (joins()) {
+        variance = ray_variance(light_->patches(), samples, all, budget);
+        noise = noise_of(*light_, variance, samples);
+      }
+      const ResidualError found =
+          residual_error(*light_, samples, noise, rounds_->reflectances(), solver_error_);
+      state(found, samples, budget);
+      const double error = result_.steps.back().estimate;
+      if (error <= wanted_.error && is_sure(found)) return;
+      if (!may_cut() && !may_cast()) return stop(Limit::Settings);
+      passes_.push_back({double(rounds_->rays()), error});
+      if (wanted_.seconds <= 0.0 && rounds_->rays() > many_rays &&
+          is_far_off(passes_, wanted_.error)) {
+        return stop(why_no_more());
+      }
+      const double gone = time_gone();
+      if (gone + next_pass * (gone - pass_begun) > 1.0) return stop(Limit::Time);
+      pass_begun = gone;
+      rounds_->set_mean(found.mean);
+      if (joins()) choice.see(light_->patches(), samples, all, noise.all());
+      if (may_cast()) light_->correct(samples, all, budget);
+      if (found.standard_error > most_standard_error * squared(wanted_.error))
+        points_wanted_ *= 2.0;
+      bool cuts = false;
+      std::vector<std::uint32_t> parent = std::move(all);
+      if (may_cut() && found.patches > 0.8 * cut_share * squared(aim * wanted_.error)) {
+        cuts = rounds_->cut_gathered(choice, cut_share * enough(), points_wanted_, parent);
+        if (rounds_->cut_shadows(cut_share * enough(), parent, &choice)) cuts = true;
+      }
+      idle = cuts || error <= std::max(wanted_.error, 0.97 * before) ? 0 : idle + 1;
+      if (idle >= most_idle && pass > 4) return stop(why_no_more());
+      before = error;
+      const double target = noise_share * squared(aim * wanted_.error * rounds_->mean());
+      if (joins()) budget = next_budget(variance, parent, target);
+      light_->shares().tell_all([&](base::Parcel& parcel) { parcel.pass(budget); });
+    }
+  }
+
+  // Few points may miss all of an error that is left in a few places: more are looked at, while
+  // there is time and up to a million.
+  [[nodiscard]] bool is_sure(const ResidualError& found) const {
+    return found.square + found.standard_error <=
+               (1.0 + most_standard_error) * squared(wanted_.error) ||
+           points_wanted_ >= most_points || time_gone() > more_points_share ||
+           !(may_cut() || may_cast());
+  }
+
+  // What may be left of the mean square by the next pass: no more is cut at once than halves the
+  // error, since what is cut for shadows alone costs rays of all other light.
+  [[nodiscard]] double enough() const {
+    const double now = result_.steps.empty() ? first_error : result_.steps.back().estimate;
+    return squared(std::max(cut_aim * wanted_.error, next_error * now) * rounds_->mean());
+  }
+
+  // At most four times as many rays as before, or as many as the time that is left pays for.
+  [[nodiscard]] std::vector<SampleBudget> next_budget(const std::vector<double>& variance,
+                                                      const std::vector<std::uint32_t>& parent,
+                                                      double target) const {
+    double most = std::max(most_growth * last_rays_, double(1 << 20));
+    if (last_took_ > 0.0) most = std::min(most, last_rays_ * (1.0 - time_gone()) / last_took_);
+    return budget_for(*light_, variance, parent, target, most, points_wanted_);
+  }
+
+  void state(const ResidualError& found, const SurfaceSamples& samples,
+             const std::vector<SampleBudget>& budget) {
+    result_.surface.parts = found.parts;
+    result_.surface.unweighted = found.unweighted;
+    result_.surface.known = found.mean > 0.0;
+    result_.surface.rays += samples.rays;
+    last_rays_ = 0.0;
+    for (const SampleBudget& e : budget) last_rays_ += e.all_rays();
+    result_.steps.push_back({"solve", light_->patches().count(),
+                             static_cast<int>(last_rays_ / static_cast<double>(budget.size())), 0,
+                             wanted_.error, found.parts.total().estimate});
+  }
+
+  // One cut makes a few others needed: the last few patches may be out of reach.
+  [[nodiscard]] Limit why_no_more() const {
+    return 64 * light_->patches().count() >= 63 * bound_.most ? bound_.of : Limit::Steps;
+  }
+
+  void stop(Limit limit) { result_.limit = limit; }
+  // The share of the time limit; 0 without one.
+  [[nodiscard]] double time_gone() const {
+    return wanted_.seconds > 0.0 && wanted_.now ? wanted_.now() / wanted_.seconds : 0.0;
+  }
+  [[nodiscard]] Progress stage(const std::string& name) const {
+    return progress_ ? progress_(name) : Progress();
+  }
+  [[nodiscard]] std::string under_way() const {
+    if (result_.steps.empty()) return fmt::format("{} patches", light_->patches().count());
+    return fmt::format("{} patches, error {} of {} wanted", light_->patches().count(),
+                       scenes::percent(result_.steps.back().estimate),
+                       scenes::percent(wanted_.error));
+  }
+
+  const scenes::World scene_;
+  const Wanted& wanted_;
+  const scenes::Quality& given_;
+  const SolveListener& listen_;
+  const StageListener& progress_;
+  SteeredSolution result_;
+  std::optional<LightOnSurfaces> light_;
+  std::optional<SurfaceRounds> rounds_;  // of the light, and with it
+  double solver_error_ = 0.0;
+  std::vector<PassError> passes_;
+  double points_wanted_ = fewest_points, last_rays_ = 0.0, last_took_ = 0.0;
+  std::size_t first_patches_ = 0;
+  PatchBound bound_;
+};
+
+}  // namespace
+
+bool cuts_surfaces(const scenes::Quality& given) {
+  return !given.patch_edge_m && given.refine.value_or(true);
+}
+
+radiosity::SolveOptions first_surface_options(const scenes::Scene& scene, double error,
+                                              std::uint64_t seed) {
+  scenes::Quality quality = scene.quality;
+  const bool cuts = cuts_surfaces(quality);
+  quality.error = cuts ? std::max(coarse_error, error) : error;
+  radiosity::SolveOptions options =
+      radiosity::solve_options(scenes::resolve_quality(scene, quality), seed);
+  if (cuts) options.patch_edge_m = options.refine.start_edge_m;
+  if (!quality.form_factor_rays) options.form_factor_rays = coarse_rays;
+  options.refine.on = false;
+  return options;
+}
+
+PatchBound patch_bound(const Wanted& wanted, const scenes::Quality& given, std::size_t first,
+                       std::size_t largest) {
+  constexpr int rays = 16;          // a patch, which coarse ones share
+  constexpr std::size_t near = 64;  // of which one more or less does not count
+  PatchBound bound{std::max(first, largest)};
+  if (given.max_patches) {
+    const std::size_t allowed = std::max(first, static_cast<std::size_t>(*given.max_patches));
+    if (allowed < bound.most) bound = {allowed, Limit::Settings};
+  }
+  const auto fits = [&](std::size_t count) {
+    return !wanted.fits || wanted.fits(static_cast<double>(count), rays);
+  };
+  if (fits(bound.most)) return bound;
+  std::size_t enough = first;
+  for (std::size_t more = bound.most; more > enough + enough / near + 1;) {
+    const std::size_t middle = enough + (more - enough) / 2;
+    (fits(middle) ? enough : more) = middle;
+  }
+  return {enough, Limit::Memory};
+}
+
+SteeredSolution reach_surfaces(const scenes::World& scene, const Wanted& wanted, std::uint64_t seed,
+                               const SolveListener& listen, const StageListener& progress) {
+  SurfaceSearch search(scene, wanted, seed, listen, progress);
+  SteeredSolution found = search.run();
+  found.surface.not_captured = not_captured(scene, {});
+  return found;
+}
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shadow rays that wait until a packet of them can be traced together.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "scenes/light/lamp_light.h"
+#include "scenes/ray_query.h"
+
+namespace earthshine::scenes {
+
+// Item: what a ray carries to whoever takes the result. One object per thread.
+template <class Item>
+class ShadowQueue {
+ public:
+  // most: rays that wait. More than a packet are traced by ascending `order`, since rays to one
+  // light go the same way.
+  explicit ShadowQueue(const RayQuery& query, std::size_t most = RayPacket::width)
+      : query_(query), most_(most) {
+    waiting_.reserve(most);
+  }
+
+  // A ray from `origin`, which lies off the surface at `point`, to a source's sample there; none
+  // where nothing can lie between. take: see trace().
+  template <class Take>
+  void add(const LightSample& sample, const Vec3& point, const Vec3& origin, const Item& item,
+           const Take& take, std::size_t order = 0) {
+    const ShadowSegment way = shadow_segment(sample, point, origin);
+    if (way.reach_m <= 0.0) return;
+    waiting_.push_back({origin, way, sample.mirror, order, item});
+    if (waiting_.size() == most_) trace(take);
+  }
+
+  // Traces all that wait. Calls take(item, share of the light that arrives) for each.
+  template <class Take>
+  void trace(const Take& take) {
+    constexpr std::size_t width = RayPacket::width;
+    if (most_ > width) {
+      std::stable_sort(waiting_.begin(), waiting_.end(),
+                       [](const Ray& a, const Ray& b) { return a.order < b.order; });
+    }
+    RayPacket packet;
+    std::array<std::uint32_t, width> mirrors;
+    std::array<Rgb, width> shares;
+    for (std::size_t first = 0; first < waiting_.size(); first += width) {
+      const std::size_t count = std::min(width, waiting_.size() - first);
+      for (std::size_t k = 0; k < count; ++k) {
+        const Ray& ray = waiting_[first + k];
+        query_.set(packet, k, ray.origin, ray.way.direction, ray.way.reach_m);
+        mirrors[k] = ray.mirror;
+      }
+      query_.light_shares(packet, mirrors.data(), count, shares.data());
+      for (std::size_t k = 0; k < count; ++k) take(waiting_[first + k].item, shares[k]);
+    }
+    rays_ += waiting_.size();
+    waiting_.clear();
+  }
+
+  [[nodiscard]] std::uint64_t rays() const { return rays_; }  // traced so far
+
+ private:
+  struct Ray {
+    Vec3 origin;
+    ShadowSegment way;
+    std::uint32_t mirror;
+    std::size_t order;
+    Item item;
+  };
+
+  const RayQuery& query_;
+  std::size_t most_;
+  std::vector<Ray> waiting_;
+  std::uint64_t rays_ = 0;
+};
+
+}  // namespace earthshine::scenes
