@@ -19,7 +19,7 @@ ROOMS = {
     "scenes": ["texture", ".", "text", "reflect", "light", "mesh/gltf", "mesh", "sky", "effects", "health", "round", "plausible", "read"],
     "radiosity": ["patches", "bodies", "factors", "objects", "direct", ".", "store", "exact/polygon",
                   "exact/occlusion", "exact"],
-    "raytrace": ["camera", "frame", "light", "incoming", "paths", "share", "gather", "shade", "witness", "passes",
+    "raytrace": ["camera", "frame", "light", "incoming", "paths", "share", "gather", "shade", "witness", "adaptive",
                  "."],
     "degrade": ["stage", "parts", "moments", ".", "settings", "range", "certify"],
     "studies": [".", "cost", "error", "surfaces", "steer", "targets", "light", "sight", "why", "orbit",

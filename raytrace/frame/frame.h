@@ -158,7 +158,7 @@ struct ErrorSums {
   // than that once in ten times where many pixels hold it, twice of ten where a dozen do, whose own
   // d^4 tell it too small when they are small. All parts of a pixel are taken as going the same
   // way.
-  double doubt = 1.0;
+  double confidence_factor = 1.0;
   [[nodiscard]] double squared_error() const {
     double all = 0.0;
     for (const double part : squared) all += part;

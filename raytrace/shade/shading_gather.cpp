@@ -16,24 +16,11 @@ constexpr std::size_t most_shadow_rays = 256;  // that wait to be traced togethe
 
 }  // namespace
 
-void PixelShader::diffuse(const Surface& surface, const scenes::Hit& hit, const Rgb& weight,
-                          int depth) {
-  const bool planned = shared_.diffuse == DiffuseSource::Solution;
-  if (planned && shared_.indirect == Indirect::Radiosity) {
-    if (!shared_.soft_radiance.empty()) read_solution(hit, weight, depth);
-    return;
-  }
+void PixelShader::diffuse(const Surface& surface, const Rgb& weight, int depth) {
   if (!shared_.gathers) return;
   const Rgb reflected = weight * surface.diffuse;
   if (has_points(depth) && read_field(surface, reflected)) return;
   gather(surface, reflected, depth);
-}
-
-void PixelShader::read_solution(const scenes::Hit& hit, const Rgb& weight, int depth) {
-  std::fill(scratch_.begin(), scratch_.end(), Rgb(0.0));
-  shared_.soft_radiance.add(hit, weight, scratch_);
-  const Part part = depth == 0 ? Part::Indirect : Part::Specular;
-  for (std::size_t k = 0; k < shared_.layers; ++k) add(k, sample_, part, scratch_[k]);
 }
 
 GatherField::Reading PixelShader::read_points(const Surface& surface, Gathered kind) const {
@@ -88,9 +75,7 @@ bool PixelShader::read_lobe(const Surface& surface, const Rgb& weight) {
 void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   const base::Frame3 frame = base::frame_around(surface.normal);
   const Vec3 origin = surface.lifted();
-  const int count = depth > 0       ? tuning::rays_behind_mirror
-                    : shared_.field ? tuning::rays_without_point
-                                    : shared_.gather_rays;
+  const int count = depth > 0 ? tuning::rays_behind_mirror : tuning::rays_without_point;
   const bool shares = depth == 0 && !shared_.incoming.bright().empty();
   GatherRay ray;
   ray.sample = sample_;
@@ -113,8 +98,8 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
     ray.direction = frame.to_world({r * std::cos(phi), r * std::sin(phi), cosine});
     if (shares) ray.share.cosine = double(cosine);
     ray.number = ++gathered_;
-    // Beside a field one of them is followed for all: what it lacks is little, and finding it dear.
-    if (shared_.field != nullptr) ray.lacking = k == 0 ? count : 0.0;
+    // One of them is followed for all: the residual is small, and estimating it dear.
+    ray.lacking = k == 0 ? count : 0.0;
     queue_gather(origin, ray);
   }
   if (!shares) return;
@@ -202,20 +187,6 @@ void PixelShader::flush_gather() {
     if (walker_ && ray.lacking > 0.0 && !hit.missed()) add_lacking(ray, hit);
   }
   gather_count_ = 0;
-}
-
-double PixelShader::scatter() const {
-  const std::size_t count = sample_luminance_.size();
-  double most = 0.0;
-  for (std::size_t light = 0; count > 1 && light < shared_.dimmest.size(); ++light) {
-    const std::span<const double> of_light(&by_light_[light * count], count);
-    double mean = 0.0, squares = 0.0;
-    for (const double luminance : of_light) mean += luminance / double(count);
-    for (const double luminance : of_light) squares += (luminance - mean) * (luminance - mean);
-    const double over = std::max(mean, shared_.dimmest[light]);
-    if (over > 0.0) most = std::max(most, std::sqrt(squares / double(count - 1)) / over);
-  }
-  return most;
 }
 
 }  // namespace earthshine::raytrace

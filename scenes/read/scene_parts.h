@@ -63,7 +63,7 @@ void read_sky(Scene& scene, const TomlNode* sun, const TomlNode* earth, const To
 [[nodiscard]] Camera read_camera(const TomlNode& node, double unit_m);
 [[nodiscard]] SettingTable read_settings(const TomlNode& node, const std::string& title,
                                          bool named);
-[[nodiscard]] Quality read_quality(const TomlNode& node);
+[[nodiscard]] Quality read_quality(const TomlNode& node, std::vector<std::string>& warnings);
 
 // A mesh and what the scene has made of its materials.
 struct ShelvedMesh {

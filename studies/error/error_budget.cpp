@@ -5,8 +5,8 @@
 #include <map>
 #include <numeric>
 
+#include "raytrace/adaptive/adaptive_render.h"
 #include "raytrace/frame/first_hit.h"
-#include "raytrace/passes/passes.h"
 
 namespace earthshine::studies {
 namespace {

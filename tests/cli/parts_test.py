@@ -17,8 +17,8 @@ from tiny_bay import SMALL_MONITOR
 
 # Pixels whose samples are told by their neighbours, by the whole picture, by nothing.
 WAYS = {
-    "shared": ("--set", "quality.gather=shared"),
-    "alone": ("--set", "quality.gather=per-sample", "--indirect", "none"),
+    "denoised": ("--set", "quality.denoise=true"),
+    "alone": ("--set", "quality.denoise=false", "--indirect", "none"),
     "paths": ("--indirect", "paths"),
     "lights": ("--indirect", "distributed", "--per-light"),
     "to an error": ("--error", "0.2", "--aov", "direct,variance,object,crypto_object"),

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <utility>
 
-#include "raytrace/passes/passes.h"
-#include "raytrace/passes/rounds.h"
-#include "raytrace/passes/sample_plan.h"
+#include "raytrace/adaptive/adaptive_render.h"
+#include "raytrace/adaptive/allocator.h"
+#include "raytrace/adaptive/sample_plan.h"
 #include "raytrace/shade/shading_setup.h"
 #include "tests/support/scene_builder.h"
 
@@ -42,9 +42,9 @@ scenes::Scene room_with_chips() {
 
 // Seen from a corner: what is off is mostly what is gathered.
 struct Looked {
-  explicit Looked(double smooth_share, scenes::Scene seen = room(false), std::uint64_t of_seed = 1)
-      : share(smooth_share), seed(of_seed), scene(std::move(seen)) {}
-  double share;
+  explicit Looked(bool denoised, scenes::Scene seen = room(false), std::uint64_t of_seed = 1)
+      : denoise(denoised), seed(of_seed), scene(std::move(seen)) {}
+  bool denoise;
   std::uint64_t seed;
   scenes::Scene scene;
   tests::Prepared prepared{scene};
@@ -64,11 +64,10 @@ struct Looked {
   RenderOptions options = [this] {
     RenderOptions of_a_coarse_picture;
     of_a_coarse_picture.columns = of_a_coarse_picture.rows = edge_px;
-    of_a_coarse_picture.shared.on = true;
-    of_a_coarse_picture.shared.smooth_share = share;
+    of_a_coarse_picture.denoise = denoise;
     of_a_coarse_picture.error = 1.0;
     of_a_coarse_picture.seed = seed;
-    of_a_coarse_picture.first_look_pixels = 1U << 16U;
+    of_a_coarse_picture.initial_sampling_pixels = 1U << 16U;
     return of_a_coarse_picture;
   }();
   // What is sampled points at what it was sampled with.
@@ -89,12 +88,12 @@ struct Looked {
 };
 
 const Looked& looked() {
-  static const Looked one(0.25);
+  static const Looked one(true);
   return one;
 }
 
 TEST(FirstLook, LeavesNothingOutWhereNeighboursShareNothing) {
-  const Looked alone(0.0);
+  const Looked alone(false);
   for (const Gathered kind : {Gathered::Solution, Gathered::Residual}) {
     for (int y = 0; y < edge_px; ++y) {
       for (int x = 0; x < edge_px; ++x) ASSERT_FALSE(alone.is_left_out(kind, x, y));

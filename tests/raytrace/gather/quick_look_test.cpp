@@ -28,7 +28,6 @@ TEST(QuickLook, SparesWhatIsSeenInMirrors) {
   RenderOptions options;
   options.columns = 96;
   options.rows = 80;
-  options.shared.on = true;
   options.error = 1.0;
   const auto gathered = [&](bool at_once) {
     options.stop = [at_once] { return at_once; };

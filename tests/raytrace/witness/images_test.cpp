@@ -106,9 +106,8 @@ double image_px2() {
 
 const std::vector<std::function<void(RenderOptions&)>>& every_way() {
   static const std::vector<std::function<void(RenderOptions&)>> ways = {
-      [](RenderOptions& options) { options.shared.on = false; },
-      [](RenderOptions& options) { options.shared.on = true; },
-      [](RenderOptions& options) { options.shared.on = true, options.error = 0.05; }};
+      [](RenderOptions& options) { options.camera_samples = 4; },
+      [](RenderOptions& options) { options.error = 0.05; }};
   return ways;
 }
 
@@ -179,7 +178,6 @@ TEST(SmallSources, ASunIsOne) {
 TEST(SmallSources, HiddenOnesAndPartsOfLargeOnesTakeNoMoreSamples) {
   const auto samples = [](const tests::SceneBuilder& builder) {
     RenderOptions options = options_of(1);
-    options.shared.on = true;
     options.error = 0.05;
     return source_picture(builder.scene, into_room(), options).report.most_camera_samples;
   };

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "raytrace/passes/stated_error.h"
+#include "raytrace/adaptive/stated_error.h"
 #include "raytrace/shade/pixel_sums.h"
 
 namespace earthshine::raytrace {
@@ -44,7 +44,7 @@ class SamplePlanner {
   [[nodiscard]] double squared_error() const {
     return whole_.yardstick > 0.0 ? whole_.squared_error() : 0.0;
   }
-  [[nodiscard]] double doubt() const { return whole_.doubt; }
+  [[nodiscard]] double confidence_factor() const { return whole_.confidence_factor; }
   // The cheapest that is expected to bring the squared error down to `wanted`, at no more than
   // most_cost.
   [[nodiscard]] SamplePlan plan(double wanted, double most_cost);

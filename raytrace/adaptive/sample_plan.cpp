@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "raytrace/passes/sample_plan.h"
+#include "raytrace/adaptive/sample_plan.h"
 
 #include <algorithm>
 #include <bit>
@@ -80,7 +80,7 @@ SamplePlanner::SamplePlanner(const PixelSums& sums, const GatherField* field,
     : sums_(sums),
       field_(field),
       costs_(costs),
-      stated_(state_error(sums, field, sums.window)),
+      stated_(state_error(sums, field)),
       whole_(add_up(stated_)) {}
 
 void SamplePlanner::look() {
