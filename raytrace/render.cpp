@@ -192,7 +192,7 @@ Frame render(const scenes::World& world, const radiosity::Solution& solution,
     frame.layers.luminance = layer_luminance(sums, frame.error);
     frame.layers.see(frame.image, world.groups.names);
     const ErrorSums all = add_up(frame.error);
-    frame.layers.scale_to(all.squared, all.yardstick);
+    frame.layers.scale_to(all.squared, all.reference_luminance);
   }
   frame.report.rays.layers += fill_first_hit(world.scene, world.query, model, window, frame.image);
   frame.report.rays.layers +=

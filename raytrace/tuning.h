@@ -45,8 +45,9 @@ inline constexpr double one_sided_90 = 1.2816;
 // Growth of the samples after which the error must have fallen to this share, or rounds give up.
 inline constexpr double hopeless_growth = 1024.0, hopeless_share = 0.5;
 
-// --- Initial samples (adaptive/allocator.h, adaptive/adaptive_render.cpp, gather/quick_look.cpp) ---
-// Of each gather point: more makes better plans and costs smooth pictures too much.
+// --- Initial samples (adaptive/allocator.h, adaptive/adaptive_render.cpp,
+// gather/initial_samples.cpp) --- Of each gather point: more makes better plans and costs smooth
+// pictures too much.
 inline constexpr std::uint32_t initial_gather_rays = 16, initial_paths = 4, initial_lobe_rays = 2;
 // Least residual paths of a picture: fewer miss light that paths seldom find.
 inline constexpr std::size_t least_paths = 1U << 16U;
@@ -58,7 +59,7 @@ inline constexpr std::size_t most_layers_for_eye = 8;
 // and cost smooth pictures too much.
 inline constexpr int initial_camera_samples = 4;
 
-// --- Time limits and stops (adaptive/adaptive_render.cpp, gather/quick_look.cpp) ---
+// --- Time limits and stops (adaptive/adaptive_render.cpp, gather/initial_samples.cpp) ---
 // Time to reserve for the rest of a picture, over the time that finding the gather points took
 // (measured: 6 by day, 9 by night), and over that of denoising: less overruns a limit, more wastes
 // it.
@@ -66,12 +67,12 @@ inline constexpr double after_points = 9.0, after_denoising = 4.0;
 // One pixel of a square of 2 * reach + 1 is sampled after a stop, px; more leaves blur.
 inline constexpr int stop_reach_px = 2;
 // Sampled mirror neighbours that replace an own sample after a stop: fewer are faster and rougher.
-inline constexpr int enough_peers = 4;
+inline constexpr int enough_mirror_neighbours = 4;
 
 // --- Denoising (share/) ---
 // Confidence margins of the Wiener gain, shares of the noise: more leaves less noise, more blur.
-inline constexpr float doubt = 0.3F;            // of q
-inline constexpr float doubt_of_chance = 0.7F;  // of sqrt(2 / N) q
+inline constexpr float noise_margin = 0.3F;   // of q
+inline constexpr float chance_margin = 0.7F;  // of sqrt(2 / N) q
 // Blurs of a window of squares; the first one is left out for all but single pixels' details. More
 // make steadier gains over wider surroundings, a fifth of the denoising time each.
 inline constexpr std::size_t window_blurs = 3;

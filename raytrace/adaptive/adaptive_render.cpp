@@ -87,9 +87,9 @@ class AdaptiveRender {
     if (field_) {
       for (const Gathered kind : every_kind) {
         const std::uint32_t each = initial.field()[static_cast<std::size_t>(kind)];
-        field_->look_first(kind, each, initial.every_second, [this] { return ends(); });
+        field_->sample_initial(kind, each, initial.every_second, [this] { return ends(); });
         add_progress(share * each * double(points));
-        if (ends()) field_->look_quickly(kind);
+        if (ends()) field_->sample_sparse(kind);
       }
       covered = !ends();
       denoise(!allocator_.has_rounds());
@@ -188,7 +188,7 @@ class AdaptiveRender {
     std::vector<std::uint32_t> samples(sums_->samples.size(), static_cast<std::uint32_t>(near));
     for (int y = window.y; field_ && y < window.y + window.rows; ++y) {
       for (int x = window.x; x < window.x + window.columns; ++x) {
-        if (!field_->is_even(x, y)) continue;
+        if (!field_->is_interior(x, y)) continue;
         samples[window.index(x, y)] = static_cast<std::uint32_t>(interior);
       }
     }

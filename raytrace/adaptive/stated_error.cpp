@@ -93,17 +93,18 @@ ErrorSums add_up(const StatedError& stated, std::span<const std::size_t> pixels)
   if (sums.luminance == 0.0) sums.luminance = sources, sums.pixels += edges;
   if (sums.pixels == 0) return sums;
   sums.luminance /= static_cast<double>(sums.pixels);
-  sums.yardstick = sums.luminance;
+  sums.reference_luminance = sums.luminance;
   if (sums.luminance < 0.0) {
     double square = 0.0;
     for (const std::size_t p : pixels) {
       if (stated.shows[p] == Shows::Nothing) continue;
       for (const float part : stated.squared[p]) square += double(part);
     }
-    sums.yardstick = 0.5 * std::sqrt(square / static_cast<double>(sums.pixels));
+    sums.reference_luminance = 0.5 * std::sqrt(square / static_cast<double>(sums.pixels));
   }
-  if (sums.yardstick <= 0.0) return sums;
-  const double scale = 1.0 / (static_cast<double>(sums.pixels) * sums.yardstick * sums.yardstick);
+  if (sums.reference_luminance <= 0.0) return sums;
+  const double scale = 1.0 / (static_cast<double>(sums.pixels) * sums.reference_luminance *
+                              sums.reference_luminance);
   double fourths = 0.0;
   for (const std::size_t p : pixels) {
     if (stated.shows[p] == Shows::Nothing) continue;

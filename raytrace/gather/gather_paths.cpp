@@ -52,7 +52,8 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
             return;
           }
           base::Rng rng(key.with(k));
-          walker.take_turn(random_number_of(p), first / 2 + k, half);  // neighbours: another first
+          walker.select_sun_stratum(random_number_of(p), first / 2 + k,
+                                    half);  // neighbours: another first
           const auto u = directions.point2(k);
           const RayStart& start = origins.start[k % origins.count];
           if (lobe) {

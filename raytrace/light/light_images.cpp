@@ -28,7 +28,7 @@ void LightSampler::find_one_rays() {
     const scenes::FlatMirror* mirror = light.mirror;
     const scenes::Lamp& lamp = scene_.lamps[light.index];
     OneRay& ray = one_rays_[k];
-    ray.is_all = true;
+    ray.is_delta = true;
     ray.position = mirror != nullptr ? mirror->image(lamp.position) : lamp.position;
     ray.axis = mirror != nullptr ? mirror->turned(lamp.axis) : lamp.axis;
     if (lamp.kind == scenes::LampKind::Spot) ray.field_cosine = scenes::field_cosine(lamp);
@@ -54,7 +54,7 @@ void LightSampler::find_throws() {
 bool LightSampler::reaches_mirror(std::size_t index) const {
   const scenes::FlatMirror& mirror = *lights_[index].mirror;
   const OneRay& ray = one_rays_[index];
-  if (!ray.is_all) return true;
+  if (!ray.is_delta) return true;
   if (ray.lamp_height_m <= 0.0) return false;
   if (ray.field_cosine < -1.0) return true;
   const Vec3 way = mirror.centre - ray.position;  // from the image, whose axis is turned as well

@@ -72,7 +72,7 @@ LightSampler::LightSampler(const scenes::World& world, Indirect indirect, int di
   for (const scenes::Lamp& lamp : scene_.lamps) cones_.push_back(scenes::spot_cone(lamp));
   surfaces_.tree = tree_of(surfaces_.lights);
   if (per_group && world.effects.sun_parts) {
-    turns_ = SunTurns(world.groups.sun_parts, world.scene.sky_parts->suns.size());
+    turns_ = SunStrata(world.groups.sun_parts, world.scene.sky_parts->suns.size());
   }
   gather_clusters(per_group);
   add_images();
@@ -205,7 +205,7 @@ bool LightSampler::may_reach(std::size_t index, const Vec3& point, const Vec3& n
   }
   const OneRay& ray = one_rays_[index];
   const Vec3 way = ray.position - point;
-  if (ray.is_all) {
+  if (ray.is_delta) {
     // By squares: a picture asks this tens of millions of times, mostly of images.
     const double distance2 = glm::dot(way, way);
     if (signed_square(glm::dot(way, normal)) < signed_square(-rounding) * distance2) return false;
@@ -214,7 +214,7 @@ bool LightSampler::may_reach(std::size_t index, const Vec3& point, const Vec3& n
   }
   const double height = mirror != nullptr ? mirror->height_m(point) : 0.0;
   if (mirror != nullptr && height <= 0.0) return false;
-  if (!ray.is_all || mirror == nullptr) return true;
+  if (!ray.is_delta || mirror == nullptr) return true;
   if (ray.lamp_height_m <= 0.0) return false;
   const Vec3 off = point + height / (height + ray.lamp_height_m) * way - mirror->centre;
   return glm::dot(off, off) <= mirror->radius_m * mirror->radius_m * (1.0 + 2e-6);

@@ -9,7 +9,7 @@
 
 #include "raytrace/frame/frame.h"
 #include "raytrace/frame/options.h"
-#include "raytrace/light/sun_turns.h"
+#include "raytrace/light/sun_strata.h"
 #include "scenes/effects/world.h"
 #include "scenes/light/emitters.h"
 #include "scenes/light/lamp_light.h"
@@ -39,7 +39,7 @@ class LightSampler {
   void choose(const scenes::Receiver& receiver, double u,
               std::vector<scenes::LightChoice>& chosen) const;
 
-  [[nodiscard]] const SunTurns& turns() const { return turns_; }
+  [[nodiscard]] const SunStrata& turns() const { return turns_; }
 
   // The lamp whose shining surface a ray meets first, nearer than nearer_than_m.
   struct SeenLamp {
@@ -58,10 +58,10 @@ class LightSampler {
   // not seen in the mirror from there.
   [[nodiscard]] bool may_reach(std::size_t light, const Vec3& point, const Vec3& normal) const;
   // Whether (u, v) of sample() choose anything: not of lamps without size.
-  [[nodiscard]] bool has_extent(std::size_t light) const { return !one_rays_[light].is_all; }
+  [[nodiscard]] bool has_extent(std::size_t light) const { return !one_rays_[light].is_delta; }
   // Where a lamp without size is that shines straight, or nothing.
   [[nodiscard]] const Vec3* lamp_point(std::size_t light) const {
-    return light < sources_ && one_rays_[light].is_all ? &one_rays_[light].position : nullptr;
+    return light < sources_ && one_rays_[light].is_delta ? &one_rays_[light].position : nullptr;
   }
   // visit(light) for each that may reach such a surface, but for the Suns of other turns.
   template <class Visit>
@@ -102,7 +102,7 @@ class LightSampler {
   // What lamps without size, or their images, send to a point: one ray, within the lamp's cone and
   // off where the mirror is.
   struct OneRay {
-    bool is_all = false;         // that the light is
+    bool is_delta = false;       // that the light is
     double field_cosine = -2.0;  // spot lamps: of half their field; others shine all round
     double lamp_height_m = 0.0;  // over the mirror
     Vec3 position{0.0}, axis{0.0};
@@ -137,7 +137,7 @@ class LightSampler {
   bool distributed_;
   std::span<const scenes::FlatMirror> mirrors_;
   std::optional<scenes::Lamp> earth_area_;
-  SunTurns turns_;
+  SunStrata turns_;
   std::vector<Light> lights_;  // the sources themselves, then their images
   std::size_t sources_ = 0;
   std::vector<OneRay> one_rays_;     // by number of the light

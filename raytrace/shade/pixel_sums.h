@@ -12,8 +12,8 @@
 
 namespace earthshine::raytrace {
 
-// RMS error of the share of a pixel that an edge covers, times n^(3/4), by n samples, spread evenly:
-// of edges in all directions and places (law SourceEdges).
+// RMS error of the share of a pixel that an edge covers, times n^(3/4), by n samples, spread
+// evenly: of edges in all directions and places (law SourceEdges).
 inline constexpr double error_of_edge = 0.27;
 
 struct PixelSums {
@@ -31,7 +31,8 @@ struct PixelSums {
   std::vector<float> rays;  // cast for the samples, of all kinds
 
   std::vector<float> layers_differ;  // the same by layer, of pixels that are noted
-  // Of a pixel: 1 + its row in layers_differ, 0 where it is not noted; for how many pixels it stands.
+  // Of a pixel: 1 + its row in layers_differ, 0 where it is not noted; for how many pixels it
+  // stands.
   std::vector<std::uint32_t> noted_row;
   std::vector<float> stands_for;  // by row
   // Of spots smaller than the pixel, which the witness expects there; empty: none.

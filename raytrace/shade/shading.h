@@ -132,15 +132,15 @@ class PixelShader {
   struct GatherRay {
     Vec3 direction{0.0};
     Rgb weight{0.0};
-    RayShare share;
+    MisContext share;
     Part part = Part::Indirect;
     std::size_t sample = 0;
-    std::uint64_t number = 0;  // in the sample: the key of what follows it
-    double lacking = 1.0;      // } how much of that it stands for; 0: it is not followed
+    std::uint64_t number = 0;      // in the sample: the key of what follows it
+    double residual_weight = 1.0;  // of that path; 0: it is not followed
   };
   void queue_gather(const Vec3& origin, const GatherRay& ray);
   void trace_shadows();
-  void add_lacking(const GatherRay& ray, const scenes::Hit& hit);
+  void add_residual(const GatherRay& ray, const scenes::Hit& hit);
   void flush_gather();
   void add(std::size_t layer, std::size_t sample, Part part, const Rgb& radiance);
   void count_luminance(std::size_t layer, std::size_t sample, const Rgb& radiance) {

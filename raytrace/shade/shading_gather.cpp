@@ -80,7 +80,7 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   GatherRay ray;
   ray.sample = sample_;
   ray.part = depth == 0 ? Part::Indirect : Part::Specular;
-  ray.share.found_rays = count;
+  ray.share.cosine_samples = count;
   ray.share.from = {origin, surface.normal};
   // Cosine-distributed rays: L = (k_d / pi) integral L_in cos = k_d mean(L_in).
   ray.weight = weight / static_cast<double>(count);
@@ -99,7 +99,7 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
     if (shares) ray.share.cosine = double(cosine);
     ray.number = ++gathered_;
     // One of them is followed for all: the residual is small, and estimating it dear.
-    ray.lacking = k == 0 ? count : 0.0;
+    ray.residual_weight = k == 0 ? count : 0.0;
     queue_gather(origin, ray);
   }
   if (!shares) return;
@@ -111,7 +111,7 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   ray.direction = aimed.direction;
   ray.weight = weight * aimed.weight;
   ray.share = aimed.share;
-  ray.lacking = 1.0;
+  ray.residual_weight = 1.0;
   ray.number = ++gathered_;
   queue_gather(origin, ray);
 }
@@ -159,14 +159,14 @@ void PixelShader::queue_gather(const Vec3& origin, const GatherRay& ray) {
 }
 
 // What the solution lacks where the ray ended, by a path that goes on from there.
-void PixelShader::add_lacking(const GatherRay& ray, const scenes::Hit& hit) {
+void PixelShader::add_residual(const GatherRay& ray, const scenes::Hit& hit) {
   base::Rng rng(
       base::Key(shared_.seed, base::Stream::Residual, pixel_).with(ray.sample).with(ray.number));
-  walker_->take_turn(pixel_ + ray.number, ray.sample / 2, ray.sample % 2);
-  const auto lacking =
+  walker_->select_sun_stratum(pixel_ + ray.number, ray.sample / 2, ray.sample % 2);
+  const auto residual =
       walker_->residual(shared_.incoming, {Vec3(0.0), ray.direction}, hit, ray.share, rng);
   for (std::size_t layer = 0; layer < shared_.layers; ++layer) {
-    add(layer, ray.sample, ray.part, ray.lacking * ray.weight * lacking[layer]);
+    add(layer, ray.sample, ray.part, ray.residual_weight * ray.weight * residual[layer]);
   }
 }
 
@@ -184,7 +184,7 @@ void PixelShader::flush_gather() {
     for (std::size_t layer = 0; layer < shared_.layers; ++layer) {
       add(layer, ray.sample, part, scratch_[layer]);
     }
-    if (walker_ && ray.lacking > 0.0 && !hit.missed()) add_lacking(ray, hit);
+    if (walker_ && ray.residual_weight > 0.0 && !hit.missed()) add_residual(ray, hit);
   }
   gather_count_ = 0;
 }

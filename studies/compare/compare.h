@@ -5,8 +5,8 @@
 // All are measured against a reference that shares nothing with them: the mean of two pictures,
 // each of a radiosity solution of its own (patches of half the edge, other random numbers), drawn
 // to half the wanted error or, where none is wanted, without denoising and with `reference_factor`
-// times the samples. The error is that of all studies (picture_error.h); the variances of the pair are
-// not known, as no picture states the noise of its solution.
+// times the samples. The error is that of all studies (picture_error.h); the variances of the pair
+// are not known, as no picture states the noise of its solution.
 #pragma once
 
 #include <cstdint>

@@ -174,7 +174,8 @@ TEST(Allocator, RoundingOfASourceIsNoLightThatIsMissing) {
       Allocator::to_error(0.05).next(planner, spent(sums, nullptr, {}), no_limit).has_value());
 }
 
-// All initial samples at 4 % and less, half of it at more, and where a limit alone ends the picture.
+// All initial samples at 4 % and less, half of it at more, and where a limit alone ends the
+// picture.
 TEST(Allocator, InitialSamplingIsAsCoarseAsThePicture) {
   constexpr std::size_t points = 256 * 256;
   const InitialSampling full = Allocator::to_error(0.04).initial(points);

@@ -32,9 +32,9 @@ TEST(Doubt, IsThatOfThePixelsThatHoldTheError) {
 }
 
 // Halves of normal noise of variance 1 in 2500 pixels: once in ten times the true error, 1, is more
-// than what is stated and its confidence_factor. 4000 pictures tell that to the root of 0.1 * 0.9 / 4000; the
-// sum of 2500 squares has a skewness g of the root of 8 / 2500, and over a spread that is told by
-// the same squares that adds phi(z) (2 z^2 + 1) / 6 g, phi the normal density.
+// than what is stated and its confidence_factor. 4000 pictures tell that to the root of 0.1 * 0.9 /
+// 4000; the sum of 2500 squares has a skewness g of the root of 8 / 2500, and over a spread that is
+// told by the same squares that adds phi(z) (2 z^2 + 1) / 6 g, phi the normal density.
 TEST(Doubt, IsExceededOnceInTenTimes) {
   constexpr int pictures = 4000;
   constexpr std::size_t pixels = 2500;

@@ -141,9 +141,9 @@ TEST(LayerErrors, StatedOfASumIsWhatOtherSeedsDifferBy) {
   }
 }
 
-// Of a picture that goes on to an error, whose rounds add up: the same of the two lamps together and
-// of each. Only the upper bound is a law: later samples go where the sum of all needs them, which
-// takes more off it than off its parts.
+// Of a picture that goes on to an error, whose rounds add up: the same of the two lamps together
+// and of each. Only the upper bound is a law: later samples go where the sum of all needs them,
+// which takes more off it than off its parts.
 TEST(LayerErrors, StatedOfASumHoldsRoundAfterRound) {
   tests::SceneBuilder builder;
   const std::uint32_t grey = builder.material(tests::grey(0.5));

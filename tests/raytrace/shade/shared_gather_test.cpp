@@ -263,9 +263,9 @@ TEST(SharedGather, TwoSamplesAreEnoughToBeginWithWhereNoEdgeIsNear) {
 }
 
 TEST(SharedGather, AStopAtTheFirstQuestionCostsLittle) {
-  // One of 25 pixels of a surface is sampled, with all strays that no pixel serves: less than half
-  // of the rays of the first look all over the picture, which a stop at its end leaves. At edges
-  // two camera samples tell what they are off by.
+  // One of 25 pixels of a surface is sampled, with all off-grid points that no pixel serves: less
+  // than half of the rays of the first look all over the picture, which a stop at its end leaves.
+  // At edges two camera samples tell what they are off by.
   RenderOptions options = shared_options(96, 80);
   options.error = 1.0;
   const auto gathered = [&](bool at_once) {

@@ -80,7 +80,7 @@ struct Looked {
   // Whether a first look is to leave that pixel out.
   [[nodiscard]] bool leaves(std::size_t pixel) const {
     const int x = static_cast<int>(pixel % edge_px), y = static_cast<int>(pixel / edge_px);
-    return (x + y) % 2 != 0 && field().is_even(x, y);
+    return (x + y) % 2 != 0 && field().is_interior(x, y);
   }
   [[nodiscard]] bool is_left_out(Gathered kind, int x, int y) const {
     return field().samples(kind, field().window().index(x, y)) == 0.0F;
@@ -92,7 +92,7 @@ const Looked& looked() {
   return one;
 }
 
-TEST(FirstLook, LeavesNothingOutWhereNeighboursShareNothing) {
+TEST(InitialSampling, LeavesNothingOutWhereNeighboursShareNothing) {
   const Looked alone(false);
   for (const Gathered kind : {Gathered::Solution, Gathered::Residual}) {
     for (int y = 0; y < edge_px; ++y) {
@@ -101,7 +101,7 @@ TEST(FirstLook, LeavesNothingOutWhereNeighboursShareNothing) {
   }
 }
 
-TEST(FirstLook, LeavesEverySecondPixelOfASurfaceToThoseBesideIt) {
+TEST(InitialSampling, LeavesEverySecondPixelOfASurfaceToThoseBesideIt) {
   for (const Gathered kind : {Gathered::Solution, Gathered::Residual}) {
     int left_out = 0;
     for (int y = 0; y < edge_px; ++y) {
@@ -115,7 +115,7 @@ TEST(FirstLook, LeavesEverySecondPixelOfASurfaceToThoseBesideIt) {
   }
 }
 
-TEST(FirstLook, SharpLobesGetMoreRays) {
+TEST(InitialSampling, SharpLobesGetMoreRays) {
   // Two surfaces: a wall whose lobe is wide, and a plate with a narrow one whose peak is 40 times
   // as high. Where the camera sees both, few pixels show the plate, so that the mean is nearer to
   // the wall's: the plate gets as many times two rays as its lobe reflects more than the mean, down
@@ -164,7 +164,7 @@ TEST(FirstLook, SharpLobesGetMoreRays) {
 }
 
 // Far from all else, too, as on the wall behind the border of a sheet.
-TEST(FirstLook, RaysBesideEdgesStartAllOverThePixel) {
+TEST(InitialSampling, RaysBesideEdgesStartAllOverThePixel) {
   const Looked at_sheet(0.25, room(true));
   const GatherField& field = at_sheet.field();
   int beside = 0, alone = 0;
@@ -172,7 +172,7 @@ TEST(FirstLook, RaysBesideEdgesStartAllOverThePixel) {
     for (int x = 0; x < edge_px; ++x) {
       const std::size_t p = field.window().index(x, y);
       if (field.points()[p].reach_m <= 0.0F) continue;
-      if (field.is_even(x, y)) {
+      if (field.is_interior(x, y)) {
         alone += field.origins_at(p) == 1 ? 1 : 0;
       } else {
         EXPECT_GT(field.origins_at(p), 1U) << x << ' ' << y;
@@ -187,7 +187,7 @@ TEST(FirstLook, RaysBesideEdgesStartAllOverThePixel) {
 // What sharing blurs there goes to nothing as that of all others does: where squared error has a
 // price, such points get the fewest samples of their own, or four times as many. An eighth of all
 // pixels at least, within four standard errors of the mean over twelve seeds: chance decides where.
-TEST(FirstLook, WhatItLeavesOutIsSampledByRounds) {
+TEST(InitialSampling, WhatItLeavesOutIsSampledByRounds) {
   constexpr double seeds = 12.0;
   std::array<double, 2> sum{}, squared{};
   for (std::uint64_t seed = 1; seed <= std::uint64_t(seeds); ++seed) {
@@ -217,7 +217,7 @@ TEST(FirstLook, WhatItLeavesOutIsSampledByRounds) {
 // Points that stand alone are sampled by likely noise: three in four at least of those whose halves
 // agree so well by chance that what is likely is ten times what they state. By what they state
 // alone one in five would be.
-TEST(FirstLook, HalvesThatAgreeByChanceAreLookedAtAgain) {
+TEST(InitialSampling, HalvesThatAgreeByChanceAreLookedAtAgain) {
   int agree = 0, sampled = 0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Looked one(0.25, room_with_chips(), seed);
@@ -225,8 +225,8 @@ TEST(FirstLook, HalvesThatAgreeByChanceAreLookedAtAgain) {
     const SamplePlan plan = planner.plan(0.0, 1e30);
     for (const Gathered kind : {Gathered::Solution, Gathered::Residual}) {
       const Shared& shared = one.field().shared(kind);
-      for (std::size_t p = 0; p < shared.likely_more.size(); ++p) {
-        if (shared.likely_more[p] <= 10.0F * shared.squared_error[p]) continue;
+      for (std::size_t p = 0; p < shared.variance_prior.size(); ++p) {
+        if (shared.variance_prior[p] <= 10.0F * shared.squared_error[p]) continue;
         ++agree;
         sampled += plan.field[static_cast<std::size_t>(kind)][p] > 0 ? 1 : 0;
       }

@@ -14,11 +14,11 @@
 
 namespace earthshine::raytrace {
 
-class SunTurns {
+class SunStrata {
  public:
-  SunTurns() = default;  // nothing takes turns: turn 0 has it all
+  SunStrata() = default;  // nothing takes turns: turn 0 has it all
   // first_layer: of the first Sun, with one layer after another for each.
-  SunTurns(std::size_t first_layer, std::size_t suns)
+  SunStrata(std::size_t first_layer, std::size_t suns)
       : first_(first_layer),
         suns_(suns),
         count_(suns > tuning::most_sun_sets ? tuning::most_sun_sets : 1) {}
