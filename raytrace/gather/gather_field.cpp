@@ -12,7 +12,7 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr std::size_t points_at_once = 4096;
-// Pixels to a off-grid point, or more: room for so many off-grid points is asked for at once.
+// Pixels to an off-grid point, or more: room for so many off-grid points is asked for at once.
 constexpr std::size_t pixels_per_off_grid_point = 3;
 
 }  // namespace

@@ -41,7 +41,7 @@ struct MirrorNeighbourhood {
   std::span<const OffGridPoint> off_grid_points;
   std::span<const std::uint32_t> first;  // of a pixel, and behind the last
   std::span<const std::uint64_t>
-      masks;                   // of a off-grid point: bits of the pixels about it, row by row
+      masks;                   // of an off-grid point: bits of the pixels about it, row by row
   std::ptrdiff_t columns = 0;  // of the window
   template <class Visit>
   void each(std::size_t off_grid_point, const Visit& visit) const {

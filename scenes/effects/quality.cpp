@@ -18,7 +18,7 @@ int power_of_two_at_least(double value, int low, int high) {
 }  // namespace
 
 int camera_samples_for(double error) {
-  return power_of_two_at_least(16.0 * std::pow(default_error / error, 4.0 / 3.0), 4, 1 << 10);
+  return power_of_two_at_least(64.0 * std::pow(default_error / error, 4.0 / 3.0), 4, 1 << 10);
 }
 
 QualityKnobs resolve_quality(const Scene& scene) { return resolve_quality(scene, scene.quality); }

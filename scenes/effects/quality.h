@@ -20,14 +20,14 @@ struct QualityKnobs {
   double refine_error = 0.0;       // root mean square, relative, at which refinement ends
   int form_factor_rays = 1024;     // per patch, a power of two
   int gather_rays = 32;            // per pixel
-  int camera_samples = 16;         // per pixel
+  int camera_samples = 64;         // per pixel
   bool denoise = true;             // gather points with their neighbours
   double solver_tolerance = 1e-8;  // relative residual
 };
 
 // A knob that the scene sets wins. Otherwise a wanted relative error e sets it by the measured laws
 //   gather noise   ~ gather_rays^-1/2        32 rays for 0.02
-//   edges          ~ camera_samples^-3/4     16 samples for 0.02
+//   edges          ~ camera_samples^-3/4     64 samples for 0.02
 //   radiosity      ~ form_factor_rays^-0.6   1024 rays for 0.02
 //   patch size     ~ patch_edge              (scene diagonal) / 48 for 0.02
 // rounded up to powers of two for rays; without a wanted error, e = 0.02.
