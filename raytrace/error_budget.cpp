@@ -5,8 +5,8 @@
 #include <map>
 #include <numeric>
 
+#include "raytrace/adaptive/adaptive_render.h"
 #include "raytrace/frame/first_hit.h"
-#include "raytrace/passes/passes.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -65,7 +65,7 @@ ErrorBudget error_budget(const scenes::World& scene, const WatchedPicture& pictu
   std::vector<std::size_t> all(stated.luminance.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   const ErrorSums whole = add_up(stated, all);
-  budget.pixels = whole.yardstick > 0.0 ? whole.pixels : 0;
+  budget.pixels = whole.reference_luminance > 0.0 ? whole.pixels : 0;
   budget.total = total_of(stated, all, frame.window.columns);
   const double bound =
       budget.total.estimate > 0.0 ? budget.total.bound_95 / budget.total.estimate : 1.0;

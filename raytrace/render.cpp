@@ -6,11 +6,11 @@
 
 #include "base/free_memory.h"
 #include "base/parallel.h"
+#include "raytrace/adaptive/adaptive_render.h"
+#include "raytrace/adaptive/stated_error.h"
 #include "raytrace/frame/cryptomatte.h"
 #include "raytrace/frame/first_hit.h"
 #include "raytrace/frame/layers.h"
-#include "raytrace/passes/passes.h"
-#include "raytrace/passes/stated_error.h"
 #include "raytrace/shade/shading_setup.h"
 
 namespace earthshine::raytrace {
@@ -53,22 +53,19 @@ void pixel_radiance(const Sampled& sampled, std::size_t pixel, std::vector<Rgb>&
 
 // What pixels read from gather points goes into their own sums, as means, and the points are let
 // go: with many layers they take as much memory as all else.
-void fold_field(Sampled& sampled, const Window& window) {
+void fold_field(Sampled& sampled) {
   PixelSums& sums = sampled.sums;
-  base::parallel_chunks(
-      static_cast<std::size_t>(window.rows), 1, [&](std::size_t begin, std::size_t end) {
-        std::vector<Rgb> radiance(sums.entries);
-        for (std::size_t row = begin; row < end; ++row) {
-          for (int x = window.x; x < window.x + window.columns; ++x) {
-            const std::size_t pixel = sums.window.index(x, window.y + static_cast<int>(row));
-            if (sums.samples[pixel] == 0) continue;
-            pixel_radiance(sampled, pixel, radiance);
-            for (std::size_t k = 0; k < sums.entries; ++k) {
-              sums.radiance[pixel * sums.entries + k] = glm::vec3(radiance[k]);
-            }
-          }
-        }
-      });
+  const auto columns = static_cast<std::size_t>(sums.window.columns);
+  base::parallel_chunks(sums.samples.size(), columns, [&](std::size_t begin, std::size_t end) {
+    std::vector<Rgb> radiance(sums.entries);
+    for (std::size_t pixel = begin; pixel < end; ++pixel) {
+      if (sums.samples[pixel] == 0) continue;
+      pixel_radiance(sampled, pixel, radiance);
+      for (std::size_t k = 0; k < sums.entries; ++k) {
+        sums.radiance[pixel * sums.entries + k] = glm::vec3(radiance[k]);
+      }
+    }
+  });
   sampled.field.reset();
   base::give_back_freed_memory(sums.radiance.size() * sizeof(glm::vec3));
 }
@@ -100,17 +97,13 @@ std::vector<LayerNoise> noise_by_part(const Sampled& sampled, const Window& wind
 }
 
 // Once the field is folded in.
-std::vector<double> layer_luminance(const PixelSums& sums, const StatedError& error,
-                                    const Window& window) {
+std::vector<double> layer_luminance(const PixelSums& sums, const StatedError& error) {
   std::vector<double> mean(sums.image_layers, 0.0);
   double pixels = 0.0;
-  for (std::size_t to = 0; to < error.shows.size(); ++to) {
-    if (!error.counts(to)) continue;
-    const auto columns = static_cast<std::size_t>(window.columns);
-    const std::size_t from = sums.window.index(window.x + static_cast<int>(to % columns),
-                                               window.y + static_cast<int>(to / columns));
+  for (std::size_t p = 0; p < error.shows.size(); ++p) {
+    if (!error.counts(p)) continue;
     for (std::size_t k = 0; k < mean.size(); ++k) {
-      mean[k] += base::luminance(Rgb(sums.radiance[from * sums.entries + k]));
+      mean[k] += base::luminance(Rgb(sums.radiance[p * sums.entries + k]));
     }
     pixels += 1.0;
   }
@@ -119,50 +112,45 @@ std::vector<double> layer_luminance(const PixelSums& sums, const StatedError& er
 }
 
 void fill_layers(const PixelSums& sums, const StatedError& error, const Layout& layout,
-                 const Window& window, base::Image& image) {
+                 base::Image& image) {
   const auto put = [&](std::size_t first, std::size_t pixel, const Rgb& value) {
     for (int c = 0; c < 3; ++c) {
       image.channels[first + static_cast<std::size_t>(c)].values[pixel] =
           static_cast<float>(value[c]);
     }
   };
-  for (int y = window.y; y < window.y + window.rows; ++y) {
-    for (int x = window.x; x < window.x + window.columns; ++x) {
-      const std::size_t from = sums.window.index(x, y), to = window.index(x, y);
-      if (sums.samples[from] == 0) continue;
-      const glm::vec3* radiance = &sums.radiance[from * sums.entries];
-      glm::vec3 total(0.0F);
-      for (std::size_t k = 0; k < sums.image_layers; ++k) {
-        total += radiance[k];
-        if (!layout.radiance.empty()) put(layout.radiance[k], to, Rgb(radiance[k]));
-      }
-      put(0, to, Rgb(total));
-      for (std::size_t part = 0; part < layout.parts.size(); ++part) {
-        if (layout.parts[part] == Layout::none_wanted) continue;
-        put(layout.parts[part], to, Rgb(radiance[sums.image_layers + part]));
-      }
-      if (layout.variance == Layout::none_wanted) continue;
-      const auto& squared = error.squared[to];
-      double variance = sums.sample_variance(from);
-      for (std::size_t kind = 0; kind < gathered_kinds; ++kind) variance += double(squared[kind]);
-      image.channels[layout.variance].values[to] = static_cast<float>(variance);
+  for (std::size_t p = 0; p < sums.samples.size(); ++p) {
+    if (sums.samples[p] == 0) continue;
+    const glm::vec3* radiance = &sums.radiance[p * sums.entries];
+    glm::vec3 total(0.0F);
+    for (std::size_t k = 0; k < sums.image_layers; ++k) {
+      total += radiance[k];
+      if (!layout.radiance.empty()) put(layout.radiance[k], p, Rgb(radiance[k]));
     }
+    put(0, p, Rgb(total));
+    for (std::size_t part = 0; part < layout.parts.size(); ++part) {
+      if (layout.parts[part] == Layout::none_wanted) continue;
+      put(layout.parts[part], p, Rgb(radiance[sums.image_layers + part]));
+    }
+    if (layout.variance == Layout::none_wanted) continue;
+    double variance = sums.sample_variance(p);
+    for (std::size_t kind = 0; kind < gathered_kinds; ++kind) {
+      variance += double(error.squared[p][kind]);
+    }
+    image.channels[layout.variance].values[p] = static_cast<float>(variance);
   }
 }
 
-void summarise(const PixelSums& sums, const Window& window, Frame& frame) {
+void summarise(const PixelSums& sums, Frame& frame) {
   RenderReport& report = frame.report;
   double samples = 0.0, finished = 0.0;
-  for (int y = window.y; y < window.y + window.rows; ++y) {
-    for (int x = window.x; x < window.x + window.columns; ++x) {
-      const std::size_t p = sums.window.index(x, y);
-      samples += sums.samples[p];
-      report.most_camera_samples =
-          std::max(report.most_camera_samples, static_cast<int>(sums.samples[p]));
-      if (static_cast<int>(sums.samples[p]) >= report.least_camera_samples) finished += 1.0;
-    }
+  for (const std::uint32_t of_pixel : sums.samples) {
+    const auto count = static_cast<int>(of_pixel);
+    samples += count;
+    report.most_camera_samples = std::max(report.most_camera_samples, count);
+    if (count >= report.least_camera_samples) finished += 1.0;
   }
-  const auto all = static_cast<double>(window.pixel_count());
+  const auto all = static_cast<double>(sums.samples.size());
   report.camera_samples = samples / all;
   report.finished_share = finished / all;
   report.relative_noise = std::sqrt(add_up(frame.error).squared_error());
@@ -188,29 +176,29 @@ Frame render(const scenes::World& world, const radiosity::Solution& solution,
 
   Sampled sampled = sample_picture(shared, setup.world(), model, options, progress, frame.report);
   const PixelSums& sums = sampled.sums;
-  frame.error = state_error(sums, sampled.field ? &*sampled.field : nullptr, window);
+  frame.error = state_error(sums, sampled.field ? &*sampled.field : nullptr);
   if (options.per_light) frame.layers.noise = noise_by_part(sampled, window, options);
   if (!options.regions.empty()) {
     frame.regions =
         RegionNoise(frame.layers, options.regions, static_cast<std::size_t>(options.columns));
     frame.layers.thin(layer_noise_step(window.pixel_count()));
   }
-  fold_field(sampled, window);
+  fold_field(sampled);
   // Not before: with many layers it is as large as what is sampled.
   frame.image = base::make_rgb_image(window.columns, window.rows);
   const Layout layout = with_layers(frame.image);
-  fill_layers(sums, frame.error, layout, window, frame.image);
+  fill_layers(sums, frame.error, layout, frame.image);
   if (!frame.layers.noise.empty()) {
-    frame.layers.luminance = layer_luminance(sums, frame.error, window);
+    frame.layers.luminance = layer_luminance(sums, frame.error);
     frame.layers.see(frame.image, world.groups.names);
     const ErrorSums all = add_up(frame.error);
-    frame.layers.scale_to(all.squared, all.yardstick);
+    frame.layers.scale_to(all.squared, all.reference_luminance);
   }
   frame.report.rays.layers += fill_first_hit(world.scene, world.query, model, window, frame.image);
-  frame.report.rays.layers += fill_cryptomatte(
-      world.scene, world.query, model,
-      {options.seed, window, sums.window, sums.samples, shared.filter}, frame.image);
-  summarise(sums, window, frame);
+  frame.report.rays.layers +=
+      fill_cryptomatte(world.scene, world.query, model,
+                       {options.seed, window, sums.samples, shared.filter}, frame.image);
+  summarise(sums, frame);
   frame.report.stopped = options.stop && options.stop();
   frame.report.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return frame;

@@ -10,7 +10,7 @@
 
 namespace earthshine::raytrace::tuning {
 
-// --- Allocation: prices (passes/sample_plan.cpp) ---
+// --- Allocation: prices (adaptive/sample_plan.cpp) ---
 // Times over that of a gather ray in a packet, measured on the payload bay. Too small a price draws
 // samples of that kind beyond their share.
 inline constexpr double ray_cost = 1.5;       // a camera sample's ray
@@ -25,7 +25,7 @@ inline constexpr double unsure_samples = 4.0;
 // Pixels of one sample count that tell the gain of even samples; with fewer, all pixels do.
 inline constexpr std::size_t few_pixels_of_class = 64;
 
-// --- Allocation: rounds (passes/rounds.cpp) ---
+// --- Allocation: rounds (adaptive/allocator.cpp) ---
 // Factor on the squared error that one round may gain: more saves denoising, plans by rougher data.
 inline constexpr double most_step = 4.0;
 // Least cost of a round over all before: more saves denoising, overshoots the wanted error.
@@ -35,18 +35,19 @@ inline constexpr double fine_error = 0.04;
 // Stop fraction of the wanted error, above fine_error and below: less is safer and dearer, as
 // rounds leave the errors that look too small. The true error is 0.89 to 1.08 of the stated one at
 // 5 % on the payload bay, up to 1.1 at 2 %.
-inline constexpr double sure_share_of_coarse = 0.94, sure_share_of_fine = 0.9;
+inline constexpr double stop_fraction_of_coarse = 0.94, stop_fraction_of_fine = 0.9;
 // Fraction of it that rounds aim at: less overshoots, more needs a further round.
 inline constexpr double planned_share = 0.873;
-static_assert(planned_share < sure_share_of_fine);  // or it would plan for what it refuses
+static_assert(planned_share < stop_fraction_of_fine);  // or it would plan for what it refuses
 // Confidence of that decision, in standard errors of the squared error (90 %, one-sided): more is
 // surer of the wanted error; costs 0.6 to 5 % of the rays.
 inline constexpr double one_sided_90 = 1.2816;
 // Growth of the samples after which the error must have fallen to this share, or rounds give up.
 inline constexpr double hopeless_growth = 1024.0, hopeless_share = 0.5;
 
-// --- Initial samples (passes/rounds.h, passes/passes.cpp, gather/quick_look.cpp) ---
-// Of each gather point: more makes better plans and costs smooth pictures too much.
+// --- Initial samples (adaptive/allocator.h, adaptive/adaptive_render.cpp,
+// gather/initial_samples.cpp) --- Of each gather point: more makes better plans and costs smooth
+// pictures too much.
 inline constexpr std::uint32_t initial_gather_rays = 16, initial_paths = 4, initial_lobe_rays = 2;
 // Least residual paths of a picture: fewer miss light that paths seldom find.
 inline constexpr std::size_t least_paths = 1U << 16U;
@@ -54,27 +55,24 @@ inline constexpr std::size_t least_paths = 1U << 16U;
 inline constexpr double most_lobe_times = 32.0;
 // Layers up to which edges get samples for the eye; more layers make these too dear.
 inline constexpr std::size_t most_layers_for_eye = 8;
-// Pixels along the shorter edge that the pilot pass samples: more make steadier plans.
-inline constexpr int planning_grid = 48;
-// Rounds of camera samples by settings, each at most fourfold.
-inline constexpr int most_rounds = 6;
+// Camera samples of a pixel, a power of two; half as many in smooth regions: more make better plans
+// and cost smooth pictures too much.
+inline constexpr int initial_camera_samples = 4;
 
-// --- Time limits and stops (passes/passes.cpp, gather/quick_look.cpp) ---
+// --- Time limits and stops (adaptive/adaptive_render.cpp, gather/initial_samples.cpp) ---
 // Time to reserve for the rest of a picture, over the time that finding the gather points took
 // (measured: 6 by day, 9 by night), and over that of denoising: less overruns a limit, more wastes
 // it.
-inline constexpr double after_points = 9.0, after_sharing = 4.0;
-// Gather rays of a camera sample over those once time is up: more ends sooner, with more noise.
-inline constexpr int hasty_share = 4;
+inline constexpr double after_points = 9.0, after_denoising = 4.0;
 // One pixel of a square of 2 * reach + 1 is sampled after a stop, px; more leaves blur.
 inline constexpr int stop_reach_px = 2;
 // Sampled mirror neighbours that replace an own sample after a stop: fewer are faster and rougher.
-inline constexpr int enough_peers = 4;
+inline constexpr int enough_mirror_neighbours = 4;
 
 // --- Denoising (share/) ---
 // Confidence margins of the Wiener gain, shares of the noise: more leaves less noise, more blur.
-inline constexpr float doubt = 0.3F;            // of q
-inline constexpr float doubt_of_chance = 0.7F;  // of sqrt(2 / N) q
+inline constexpr float noise_margin = 0.3F;   // of q
+inline constexpr float chance_margin = 0.7F;  // of sqrt(2 / N) q
 // Blurs of a window of squares; the first one is left out for all but single pixels' details. More
 // make steadier gains over wider surroundings, a fifth of the denoising time each.
 inline constexpr std::size_t window_blurs = 3;

@@ -277,9 +277,8 @@ struct Quality {
   std::optional<bool> refine;           // patches where they matter; unset: see resolve_quality
   std::optional<int> form_factor_rays;  // per patch
   std::optional<int> gather_rays;       // per pixel
-  std::optional<bool> share_gather;     // gather rays serve a pixel's samples and its neighbours
-  std::optional<double> smooth_share;   // of the mean gather ray, how far neighbours share
-  std::optional<double> picture_noise;  // of the camera samples, relative
+  std::optional<int> camera_samples;    // per pixel
+  std::optional<bool> denoise;          // gather points with their neighbours
   std::optional<double> solver_tolerance;
 };
 

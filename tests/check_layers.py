@@ -21,7 +21,7 @@ ROOMS = {
     "radiosity": ["patches", "bodies", "factors", "objects", "direct", ".", "store", "exact/polygon",
                   "exact/occlusion", "exact"],
     "raytrace": ["camera", "frame", "light", "incoming", "surfaces", "solve_control", "paths", "share", "gather", "shade",
-                 "witness", "passes", "."],
+                 "witness", "adaptive", "."],
     "degrade": ["stage", "parts", "moments", ".", "settings", "range", "certify"],
     "studies": [".", "cost", "targets", "light", "sight", "why", "orbit",
                 "compare", "accuracy"],

@@ -52,9 +52,8 @@ Json AccuracyParts::cache_key_of(const studies::AccuracyStep& step, std::uint64_
                        {"steered", step.steered()},
                        {"wanted_error", step.quality.error.value_or(0.0)},
                        {"gather_rays", picture.gather_rays},
-                       {"share_gather", picture.shared.on},
-                       {"smooth_share", picture.shared.smooth_share},
-                       {"picture_noise", picture.shared.noise}};
+                       {"camera_samples", picture.camera_samples},
+                       {"denoise", picture.denoise}};
   if (step.indirect == raytrace::Indirect::Radiosity) {
     cache_key["solve"] = {{"patch_edge_m", solver.patch_edge_m},
                           {"form_factor_rays", solver.form_factor_rays},
@@ -282,7 +281,7 @@ std::vector<int> AccuracyStages::further_rounds() {
 }
 
 studies::AccuracyStep AccuracyStages::straight_step() const {
-  return studies::straight_step(task_.loaded.scene, finest());
+  return studies::straight_step(finest());
 }
 std::uint64_t AccuracyStages::straight_seed(int side) const {
   return studies::reference_seed(task_.view.seed, side, most_paths);

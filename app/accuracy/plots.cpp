@@ -24,7 +24,7 @@ constexpr Look looks[] = {
     {"radiosity", "max_patches", "patches alone", "#3b8bd6", 4},
     {"radiosity", "form_factor_rays", "form-factor rays alone", "#3b8bd6", 6},
     {"radiosity", "gather_rays", "gather rays alone", "#3b8bd6", 8},
-    {"radiosity", "picture_noise", "camera samples alone", "#3b8bd6", 10},
+    {"radiosity", "camera_samples", "camera samples alone", "#3b8bd6", 10},
     {"direct", "error", "direct light alone", "#777777", 5},
     {"distributed", "distributed_lights", "distributed lights", "#d9731a", 9},
     {"paths", "samples", "paths", "#2c8a3a", 13},

@@ -80,7 +80,8 @@ Json json_of(const CompareCall& call, const scenes::Camera& camera,
           {"rows", options.rows},
           {"seed", options.seed},
           {"gather_rays", options.gather_rays},
-          {"reference_gather_rays", options.rays_of_a_reference()},
+          {"camera_samples", options.camera_samples},
+          {"reference_factor", options.reference_factor},
           {"patches", comparison.solution.patches},
           {"reference_patches", comparison.reference_patches},
           {"pixels_compared", comparison.reference().error.pixels},
@@ -125,13 +126,10 @@ void run(const CompareCall& call, const Common& common) {
   options.columns = call.size ? call.size->columns : camera.columns;
   options.rows = call.size ? call.size->rows : camera.rows;
   // The program as users run it.
-  const scenes::QualityKnobs knobs = scenes::resolve_quality(loaded.scene);
-  const raytrace::RenderOptions as_rendered = raytrace::render_options(knobs);
+  const raytrace::RenderOptions as_rendered =
+      raytrace::render_options(scenes::resolve_quality(loaded.scene));
   options.gather_rays = as_rendered.gather_rays;
-  options.shared = as_rendered.shared;
-  options.reference_rays =
-      options.reference_factor * knobs.gather_rays *
-      (loaded.scene.quality.gather_rays || !knobs.share_gather ? 1 : scenes::rays_alone_per_shared);
+  options.camera_samples = as_rendered.camera_samples;
   options.distributed_lights = call.lights;
   options.distributed_over = call.area;
   options.error = loaded.scene.quality.error.value_or(0.0);

@@ -25,9 +25,9 @@ raytrace::Frame trace(const Studio& studio, const scenes::Camera& camera,
       progress);
 }
 
-// Whether quality.gather_rays alone says how many samples there are.
+// Paths are as many as quality.gather_rays says.
 bool as_set(const raytrace::RenderOptions& options) {
-  return !options.shared.on || options.indirect == raytrace::Indirect::Paths;
+  return options.indirect == raytrace::Indirect::Paths;
 }
 
 raytrace::Limit limit_of(const Drawn& drawn, double wanted) {

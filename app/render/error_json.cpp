@@ -86,7 +86,7 @@ const char* words_of(raytrace::Limit limit) {
     case raytrace::Limit::Settings:
       return "quality.max_patches, quality.form_factor_rays with quality.patch_edge (or refine = "
              "false) is given, which wins over it, or a picture has as many quality.gather_rays as "
-             "are set (gather = \"per-sample\", --indirect paths); leave it out, or raise these";
+             "are set (--indirect paths); leave it out, or raise these";
     case raytrace::Limit::Steps:
       return "no end in sight after several tries";
     case raytrace::Limit::Stopped:

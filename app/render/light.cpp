@@ -138,10 +138,9 @@ bool steers(const RenderCall& call, const scenes::Scene& scene) {
 void want_usual_error(const RenderCall& call, scenes::Scene& scene) {
   constexpr double usual_error = 0.05;
   const scenes::Quality& given = scene.quality;
-  const bool is_said = given.error || given.gather_rays || given.share_gather ||
-                       given.smooth_share || given.picture_noise || call.no_error ||
-                       call.time_limit_s > 0.0 || !call.solution.empty() || call.part.in_parts() ||
-                       call.indirect == raytrace::Indirect::Paths;
+  const bool is_said = given.error || given.gather_rays || given.camera_samples || given.denoise ||
+                       call.no_error || call.time_limit_s > 0.0 || !call.solution.empty() ||
+                       call.part.in_parts() || call.indirect == raytrace::Indirect::Paths;
   if (!is_said) scene.quality.error = usual_error;
 }
 

@@ -165,13 +165,10 @@ raytrace::RenderOptions picture_options(const RenderCall& call, const Common& co
   raytrace::RenderOptions options = raytrace::render_options(scenes::resolve_quality(loaded.scene));
   options.columns = call.size ? call.size->columns : camera.columns;
   options.rows = call.size ? call.size->rows : camera.rows;
-  // Paths share nothing.
-  const bool alone = call.indirect == raytrace::Indirect::Paths && options.shared.on;
-  if (alone && !loaded.scene.quality.gather_rays) {
-    options.gather_rays *= scenes::rays_alone_per_shared;
+  if (call.indirect == raytrace::Indirect::Paths && !loaded.scene.quality.gather_rays) {
+    options.gather_rays *= scenes::paths_per_gather_ray;
   }
   if (steers(call, loaded.scene)) options.error = *loaded.scene.quality.error;
-  options.fills_time = !steers(call, loaded.scene);
   if (call.crop) options.crop = *call.crop;
   if (call.only_pixel && (call.crop->x >= options.columns || call.crop->y >= options.rows)) {
     throw base::Error(base::Blame::Input, call.pixel_option(),

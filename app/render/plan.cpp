@@ -174,9 +174,8 @@ Json plan_json(LoadedScene& loaded, const RenderCall& call, const Common& common
                        {"solver_tolerance", solver.tolerance},
                        {"error", to_json(loaded.scene.quality.error)},
                        {"max_patches", knobs.max_patches > 0 ? Json(knobs.max_patches) : Json()},
-                       {"gather", knobs.share_gather ? "shared" : "per-sample"},
-                       {"smooth", knobs.smooth_share},
-                       {"picture_noise", knobs.picture_noise}};
+                       {"camera_samples", knobs.camera_samples},
+                       {"denoise", knobs.denoise}};
   report["patches"] = patches;
   report["patches_at_most"] = refines;
   report["rays"] = solves ? patches * rays_per_patch : 0;

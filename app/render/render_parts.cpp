@@ -11,8 +11,8 @@
 #include "app/render/light.h"
 #include "base/error.h"
 #include "radiosity/store/solution_key.h"
+#include "raytrace/adaptive/adaptive_render.h"
 #include "raytrace/frame/join.h"
-#include "raytrace/passes/passes.h"
 
 namespace earthshine::app {
 namespace {
@@ -22,8 +22,8 @@ Json settings_of(const RenderCall& call, const raytrace::RenderOptions& how) {
   const raytrace::Window window = raytrace::window_of(how);
   return {{"picture", {how.columns, how.rows}},
           {"window", {window.x, window.y, window.columns, window.rows}},
-          {"gather", {how.gather_rays, how.shared.on, how.shared.smooth_share, how.shared.noise}},
-          {"samples", {how.shared.least_samples, how.shared.most_samples}},
+          {"gather", {how.gather_rays, how.denoise}},
+          {"samples", how.camera_samples},
           {"indirect", indirect_name(how.indirect)},
           {"caustics", how.paths == raytrace::PathSet::All},
           {"lights", how.distributed_lights},

@@ -162,9 +162,9 @@ Json StudyFrames::cache_key(const StudyCamera& camera) const {
                          camera.camera->filter_width_px};
   cache_key["columns"] = how.columns;
   cache_key["rows"] = how.rows;
-  cache_key["gather_rays"] = how.gather_rays;
   cache_key["gather_step"] = how.gather_step;
-  cache_key["shared"] = {how.shared.on, how.shared.smooth_share, how.error, how.shared.noise};
+  cache_key["denoise"] = how.denoise;
+  cache_key["error"] = how.error;
   cache_key["seed"] = how.seed;
   return cache_key;
 }

@@ -26,8 +26,7 @@ TABLE = {
     "pixel-filter": (STILL, ["--crop", "90,60,80x60"], [], ["--set", "camera.front.filter=blackman-harris"]),
     "distributed": (BAY / "day-earthshine.toml", ["--camera", "B"],
                     ["--indirect", "distributed", "--distributed-lights", "16"], []),
-    "shared-gather": (STILL, ["--set", "quality.gather_rays=16"],
-                      ["--set", "quality.gather=per-sample"], []),
+    "denoised": (STILL, ["--set", "quality.gather_rays=16"], ["--set", "quality.denoise=false"], []),
 }
 
 

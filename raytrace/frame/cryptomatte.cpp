@@ -184,14 +184,14 @@ std::uint64_t fill_cryptomatte(const scenes::Scene& scene, const scenes::RayQuer
   const CryptomatteLayers layers(scene, image);
   if (layers.empty()) return 0;
   std::atomic<std::uint64_t> rays = 0;
-  const Window& window = samples.wanted;
+  const Window& window = samples.window;
   base::parallel_chunks(
       static_cast<std::size_t>(window.rows), 8, [&](std::size_t begin, std::size_t end) {
         CryptomatteWriter writer(layers);
         for (int y = window.y + static_cast<int>(begin); y < window.y + static_cast<int>(end);
              ++y) {
           for (int x = window.x; x < window.x + window.columns; ++x) {
-            const std::uint32_t count = samples.counts[samples.counted.index(x, y)];
+            const std::uint32_t count = samples.counts[window.index(x, y)];
             if (count == 0) continue;
             const auto number =
                 static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(camera.columns) +

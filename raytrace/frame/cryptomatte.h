@@ -102,16 +102,15 @@ class CryptomatteWriter {
   double whole_ = 0.0;
 };
 
-// The camera samples that a picture was made of, and the window of the picture that is wanted.
+// The camera samples that a window of a picture was made of.
 struct CoverageSamples {
   std::uint64_t seed = 1;
-  Window wanted;
-  Window counted;                            // holds `wanted`
-  const std::vector<std::uint32_t>& counts;  // per pixel of `counted`; 0: not finished
+  Window window;
+  const std::vector<std::uint32_t>& counts;  // per pixel of it; 0: not finished
   const PixelFilter& filter;
 };
 
-// Fills the Cryptomatte channels that `image`, the wanted window, has, by casting the picture's own
+// Fills the Cryptomatte channels that `image`, the window, has, by casting the picture's own
 // camera samples once more, at least sixteen for each finished pixel. (How many a pixel has is
 // known only in the end, and rays without light are cheap.) Returns the rays cast.
 std::uint64_t fill_cryptomatte(const scenes::Scene& scene, const scenes::RayQuery& query,

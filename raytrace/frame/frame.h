@@ -62,7 +62,7 @@ struct RenderReport {
                                  // show one sample or two
   bool stopped = false;
   // Samples in all that the wanted error is expected to take, over those that were cast; 0 where it
-  // was surely reached (Rounds), or before there were some all over the picture.
+  // was surely reached (Allocator), or before there were some all over the picture.
   double growth = 0.0;
   // Pixels where the witness expects light that the samples have not found; it is in the error.
   std::size_t unexplained_pixels = 0;
@@ -150,15 +150,16 @@ struct ErrorSums {
   double luminance = 0.0;  // their mean, of all light where there is no reflected light
   // What errors are relative to: that mean, or, where noise has made it negative, half of what
   // pixels are off by, so that no error that can be asked for, 1 at most, is reached there.
-  double yardstick = 0.0;
-  std::array<double, error_parts> squared{};  // mean squared errors, weighted, over yardstick^2
+  double reference_luminance = 0.0;
+  std::array<double, error_parts>
+      squared{};  // mean squared errors, weighted, over reference luminance^2
   // By how much the error may well be larger than is stated: as if each pixel were told by itself,
   // by one difference of its halves, d, whose square scatters by 2 s^4 for normal noise of variance
   // s^2, 2/3 of the mean of d^4; 1.28 of the root of their sum is added. The true error is more
   // than that once in ten times where many pixels hold it, twice of ten where a dozen do, whose own
   // d^4 tell it too small when they are small. All parts of a pixel are taken as going the same
   // way.
-  double doubt = 1.0;
+  double confidence_factor = 1.0;
   [[nodiscard]] double squared_error() const {
     double all = 0.0;
     for (const double part : squared) all += part;
@@ -205,8 +206,8 @@ struct LayerErrors {
   void thin(std::size_t step);
   // Takes each place's light from the picture. groups: its layers'.
   void see(const base::Image& picture, std::span<const std::string> groups);
-  // squared: by part, stated of the sum of all: mean, over yardstick^2 (ErrorSums).
-  void scale_to(std::span<const double> squared, double yardstick);
+  // squared: by part, stated of the sum of all: mean, over reference luminance^2 (ErrorSums).
+  void scale_to(std::span<const double> squared, double reference_luminance);
   // Error of the sum with these weights, whose bright pixels count as error_weight says: of each
   // part what is stated of the sum of all, by as much as its samples' noise is that of the weighted
   // sum, before neighbours share it. None where the sum is dark or nothing is known.
@@ -216,8 +217,8 @@ struct LayerErrors {
   };
   [[nodiscard]] std::optional<OfSum> of(std::span<const double> weights) const;
 };
-// Noise of the layers' means over regions of a picture. Samples of different places are independent,
-// and neighbours that share noise leave a mean over many pixels as it is.
+// Noise of the layers' means over regions of a picture. Samples of different places are
+// independent, and neighbours that share noise leave a mean over many pixels as it is.
 struct RegionNoise {
   std::size_t layers = 0;
   // region * layers (layers + 1) / 2: covariance of layers j <= k at k (k + 1) / 2 + j, luminance,

@@ -49,14 +49,15 @@ void LayerErrors::see(const base::Image& picture, std::span<const std::string> g
   }
 }
 
-void LayerErrors::scale_to(std::span<const double> squared, double yardstick) {
+void LayerErrors::scale_to(std::span<const double> squared, double reference_luminance) {
   const std::vector<double> ones(luminance.size(), 1.0);
   double mean = 0.0;
   for (const double of_layer : luminance) mean += of_layer;
   per_noise.assign(noise.size(), 0.0);
   for (std::size_t part = 0; part < noise.size(); ++part) {
     const double of_all = noise_of(noise[part], ones, mean);
-    if (of_all > 0.0) per_noise[part] = squared[part] * yardstick * yardstick / of_all;
+    if (of_all > 0.0)
+      per_noise[part] = squared[part] * reference_luminance * reference_luminance / of_all;
   }
 }
 

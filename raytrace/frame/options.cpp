@@ -21,9 +21,8 @@ Window window_of(const RenderOptions& options) {
 RenderOptions render_options(const scenes::QualityKnobs& knobs) {
   RenderOptions options;
   options.gather_rays = knobs.gather_rays;
-  options.shared.on = knobs.share_gather;
-  options.shared.smooth_share = knobs.smooth_share;
-  options.shared.noise = knobs.picture_noise;
+  options.camera_samples = knobs.camera_samples;
+  options.denoise = knobs.denoise;
   return options;
 }
 

@@ -27,24 +27,15 @@ enum class PathSet {
               // shadow rays bring (flat mirrors, straight glass) and what gather rays meet
 };
 
-// How rays are spent on the final gather.
-struct SharedGather {
-  // On: gather rays start at one point per pixel and serve all of its camera samples, and
-  // neighbouring points share theirs. Camera samples go where the picture is not yet as exact as
-  // wanted. Off: every camera sample has gather rays of its own and every pixel equally many of
-  // both: unbiased given the solution, slow, the oracle of the former.
-  bool on = false;
-  double smooth_share = 0.25;  // 0: neighbouring points share nothing
-  double noise = 0.02;  // wanted RMS standard error from camera samples, over the mean luminance
-  int least_samples = 4, most_samples = 1024;  // per pixel, powers of two
-};
-
 struct RenderOptions {
   int columns = 512;
   int rows = 512;
-  Window crop;            // of the picture; without columns the whole of it
-  int gather_rays = 256;  // per pixel
-  SharedGather shared = {};
+  Window crop;  // of the picture; without columns the whole of it
+  // Per gather point and pixel, rounded down to powers of two; only where has_rounds() is false.
+  // Paths of Indirect::Paths per pixel.
+  int gather_rays = 32;
+  int camera_samples = 16;  // per pixel
+  bool denoise = true;      // gather points with their neighbours on the same surface
   Indirect indirect = Indirect::Radiosity;
   PathSet paths = PathSet::All;
   int distributed_lights = 64;  // N of Indirect::Distributed
@@ -57,17 +48,16 @@ struct RenderOptions {
   std::vector<std::vector<std::uint32_t>> regions;
   std::vector<std::string> aovs;  // of aov_names()
   std::uint64_t seed = 1;
-  // With SharedGather: samples of all kinds go where they help most until the picture's stated
-  // error, over its mean luminance, is no more than this; 0: as many as the settings say.
+  // Samples of all kinds go where they help most until the picture's stated error, over its mean
+  // luminance, is no more than this; 0: no error is wanted.
   double error = 0.0;
-  // The first look is as coarse as that of a picture of so many pixels; 0: of its own.
-  std::size_t first_look_pixels = 0;
-  // With SharedGather: goes on until these seconds have passed, however exact the picture is by
-  // then, with samples of all kinds where they help most; 0: no limit. The bytes then differ
-  // between runs.
+  // The initial samples are those of a picture of so many pixels; 0: of its own.
+  std::size_t initial_sampling_pixels = 0;
+  // The picture ends after these seconds, and without an `error` not before; 0: no limit. The bytes
+  // then differ between runs.
   double time_limit_s = 0.0;
-  // Off: the limit is one alone, and the picture is done when it is as exact as wanted.
-  bool fills_time = true;
+  // Whether samples follow the stated error, to an error or a time; else their numbers are fixed.
+  [[nodiscard]] bool has_rounds() const { return error > 0.0 || time_limit_s > 0.0; }
   // Asked often, from many threads; once it says true the frame is returned with what is finished.
   std::function<bool()> stop = {};
 };

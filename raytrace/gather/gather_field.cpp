@@ -6,14 +6,14 @@
 
 #include "base/parallel.h"
 #include "raytrace/gather/gather_tiles.h"
-#include "raytrace/share/alone.h"
+#include "raytrace/share/isolated.h"
 
 namespace earthshine::raytrace {
 namespace {
 
 constexpr std::size_t points_at_once = 4096;
-// Pixels to a stray, or more: room for so many strays is asked for at once.
-constexpr std::size_t pixels_per_stray = 3;
+// Pixels to an off-grid point, or more: room for so many off-grid points is asked for at once.
+constexpr std::size_t pixels_per_off_grid_point = 3;
 
 }  // namespace
 
@@ -33,12 +33,12 @@ GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
       layers_(setting.image_layers + (setting.keeps_sky_apart ? 1 : 0)) {
   camera_.columns = window_.columns;
   camera_.rows = window_.rows;
-  points_.reserve(grid_ + grid_ / pixels_per_stray);
-  start_.reserve(grid_ + grid_ / pixels_per_stray);
+  points_.reserve(grid_ + grid_ / pixels_per_off_grid_point);
+  start_.reserve(grid_ + grid_ / pixels_per_off_grid_point);
   points_.resize(grid_);
   start_.resize(grid_);
-  find_strays(find_points());
-  find_peers();
+  find_off_grid_points(find_points());
+  find_mirror_neighbours();
   lengths_.assign(points_.size(), {});
   over_pixel_.assign(points_.size(), 0);
   find_first_origins();
@@ -98,9 +98,10 @@ Shared GatherField::share_among(Gathered kind, Estimate& estimate, bool in_place
   const Keep keep = setting_.shares ? Keep::AsTold : Keep::All;
   Shared shared = in_place ? share_in_place(neighbours, estimate, keep)
                            : raytrace::share(neighbours, estimate, keep);
-  add_strays(strays_, estimate, shared);
-  share_among_peers({strays_, first_stray_, peers_, window_.columns}, estimate, shared);
-  tell_alone(neighbours, window_, strays_, estimate, shared);
+  add_off_grid_points(off_grid_points_, estimate, shared);
+  share_among_mirror_neighbours(
+      {off_grid_points_, first_off_grid_, mirror_neighbours_, window_.columns}, estimate, shared);
+  regularise_isolated_variance(neighbours, window_, off_grid_points_, estimate, shared);
   return shared;
 }
 

@@ -2,9 +2,9 @@
 // The final gather on a grid: at the surface point behind every pixel's centre, what comes in,
 // shared by all of the pixel's camera samples and by neighbouring points (share.h). Three things
 // are estimated at each point, each with as many samples as it needs. Where the pixel shows other
-// surfaces beside the one behind its centre, each of these has a point of its own, a stray
-// (strays.h), which lies on no grid. Where what comes in changes within a pixel, as its rays'
-// lengths tell, or a glossy surface turns from one pixel to the next, they start from several
+// surfaces beside the one behind its centre, each of these has a point of its own, an off-grid point
+// (off-grid points.h), which lies on no grid. Where what comes in changes within a pixel, as its
+// rays' lengths tell, or a glossy surface turns from one pixel to the next, they start from several
 // places of the point's surface in the pixel's footprint, other ones each time: the point stands
 // for their mean. So they do beside edges.
 //
@@ -25,8 +25,8 @@
 #include "raytrace/gather/gather_rays.h"
 #include "raytrace/incoming/incoming_light.h"
 #include "raytrace/paths/path_walker.h"
+#include "raytrace/share/off_grid.h"
 #include "raytrace/share/share.h"
-#include "raytrace/share/strays.h"
 
 namespace earthshine::raytrace {
 
@@ -77,9 +77,9 @@ class GatherField {
     std::span<const std::uint8_t> noted = {};  // per pixel of the picture, 1: all of its points
     std::uint64_t seed = 1;
   };
-  // Finds the points: one for each pixel of the field, row by row, then the strays. camera: of the
-  // picture, whose columns and rows are multiples of the step. `world` and `incoming` must outlive
-  // it.
+  // Finds the points: one for each pixel of the field, row by row, then the off-grid points.
+  // camera: of the picture, whose columns and rows are multiples of the step. `world` and
+  // `incoming` must outlive it.
   GatherField(const PathWorld& world, const IncomingLight& incoming, const GatherSurface& surface,
               const CameraModel& camera, const Setting& setting);
 
@@ -87,15 +87,16 @@ class GatherField {
   // of two; the `round`-th time.
   void cast(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
             const std::function<bool()>& stop);
-  // A first look: `each` everywhere, or, where neighbours share and the centres of a pixel and of
+  // Initial samples: `each` everywhere, or, where neighbours share and the centres of a pixel and of
   // those about it lie on one surface, at every second pixel, which serves those beside it. Of the
   // fewest lobe rays more where a lobe peaks higher than their mean.
-  void look_first(Gathered kind, std::uint32_t each, bool every_second,
-                  const std::function<bool()>& stop);
+  void sample_initial(Gathered kind, std::uint32_t each, bool every_second,
+                      const std::function<bool()>& stop);
   // Where a stop or the time limit left no samples of a kind: the fewest. Where neighbours share,
   // the middle one of 25 pixels serves those about it that show the same surface, and where none
-  // does a point as far on as it may be; of what mirrors show any with fewer than four such peers.
-  void look_quickly(Gathered kind);
+  // does a point as far on as it may be; of what mirrors show any with fewer than four such mirror
+  // neighbours.
+  void sample_sparse(Gathered kind);
   // The least that can be asked for at once: two halves of the fewest.
   [[nodiscard]] static std::uint32_t fewest_samples(Gathered kind);
   [[nodiscard]] bool gathers(Gathered kind) const;
@@ -104,16 +105,17 @@ class GatherField {
   // diffuse() and lobe() have each layer.
   void share(Gathered kind, bool last);
 
-  // A point whose values may stand for the surface point that pixel (x, y) of the picture meets: one of the
-  // pixel's own, on the same surface and near for its surroundings; no_point if there is none.
+  // A point whose values may stand for the surface point that pixel (x, y) of the picture meets:
+  // one of the pixel's own, on the same surface and near for its surroundings; no_point if there is
+  // none.
   [[nodiscard]] std::size_t find(int x, int y, const Sighting& place) const;
   // For what find() has no point: slivers of a pixel, and where a glossy surface turns fast. The
   // nearest point of the pixel and those about it on the same surface; for lobes one whose lobe
   // sees alike, too.
   [[nodiscard]] std::size_t find_beside(int x, int y, const Sighting& place, Gathered kind) const;
-  // What stands for a place whose point is `own`: with one point for several pixels, bilinear weights
-  // of the points about the pixel's middle that stand for the place, too; those of others go to
-  // `own`.
+  // What stands for a place whose point is `own`: with one point for several pixels, bilinear
+  // weights of the points about the pixel's middle that stand for the place, too; those of others
+  // go to `own`.
   struct Reading {
     std::array<std::size_t, 4> point{};
     std::array<float, 4> weight{};
@@ -135,17 +137,17 @@ class GatherField {
   // All of the field's pixels, and in which of them a point lies.
   [[nodiscard]] const Window& window() const { return window_; }
   [[nodiscard]] std::size_t pixel_of(std::size_t point) const {
-    return point < grid_ ? point : strays_[point - grid_].pixel;
+    return point < grid_ ? point : off_grid_points_[point - grid_].pixel;
   }
 
   // The pixel of the picture in the middle of a point's pixel.
   [[nodiscard]] std::array<int, 2> picture_pixel(std::size_t point) const;
   [[nodiscard]] double cover_of(std::size_t point) const {
-    return point < grid_ ? 1.0 : double(strays_[point - grid_].cover);
+    return point < grid_ ? 1.0 : double(off_grid_points_[point - grid_].cover);
   }
   // Whether the centres of the field's pixel that holds (x, y) of the picture, and of those about
   // it, lie on one surface, or on none.
-  [[nodiscard]] bool is_even(int x, int y) const {
+  [[nodiscard]] bool is_interior(int x, int y) const {
     return even_[window_.index(x / setting_.step, y / setting_.step)] != 0;
   }
   // Places that a point's rays start from, at most: 1, or all over its pixel.
@@ -170,16 +172,16 @@ class GatherField {
   [[nodiscard]] double mean_lobe() const;  // of the points that have one
   static std::size_t number(Gathered kind) { return static_cast<std::size_t>(kind); }
   struct Found {
-    Stray stray;
+    OffGridPoint off_grid_point;
     GatherPoint point;
     RayStart start;
   };
-  // Those behind the pixels' centres; what mirrors show there is a stray, and returned.
+  // Those behind the pixels' centres; what mirrors show there is an off-grid point, and returned.
   std::vector<Found> find_points();
-  void find_strays(const std::vector<Found>& mirrored);
+  void find_off_grid_points(const std::vector<Found>& mirrored);
   // Of points that mirrors show, which others share with them.
-  void find_peers();
-  // Points whose rays start all over their pixel from the first look on: centres about which not
+  void find_mirror_neighbours();
+  // Points whose rays start all over their pixel from the initial samples on: centres about which not
   // all lie on one surface (on the payload bay the rays' lengths tell so of three in four), and
   // glossy ones beside which their material has another normal.
   void find_first_origins();
@@ -194,7 +196,7 @@ class GatherField {
     Ray ray;
     scenes::Hit hit;
   };
-  [[nodiscard]] std::array<Met, scenes::RayPacket::width> look(
+  [[nodiscard]] std::array<Met, scenes::RayPacket::width> trace_pixel(
       std::size_t pixel, const Places& x, const Places& y, std::size_t first = 0,
       std::size_t end = scenes::RayPacket::width) const;
   // Finds more points whose rays must start all over their pixel, by the length of all their rays,
@@ -249,11 +251,11 @@ class GatherField {
   std::size_t grid_;  // points that are pixels' centres
   std::size_t image_layers_, layers_;
   std::vector<GatherPoint> points_;
-  std::vector<Stray> strays_;               // those after the grid
-  std::vector<std::uint32_t> first_stray_;  // of a pixel, and behind its last
+  std::vector<OffGridPoint> off_grid_points_;  // those after the grid
+  std::vector<std::uint32_t> first_off_grid_;  // of a pixel, and behind its last
   std::vector<RayStart> start_;
   std::vector<RayLengths> lengths_;       // of the rays that read the solution
-  std::vector<std::uint8_t> even_;        // per pixel, 1: is_even()
+  std::vector<std::uint8_t> even_;        // per pixel, 1: is_interior()
   std::vector<std::uint8_t> over_pixel_;  // per point, 1: rays start all over its pixel
   std::array<Estimate, gathered_kinds> estimate_;
   std::array<Shared, gathered_kinds> shared_;
@@ -262,7 +264,8 @@ class GatherField {
   std::array<std::vector<glm::vec3>, 2> sums_;  // of the image layers: of diffuse_, of lobes
   std::array<RayCounts, gathered_kinds> rays_of_;
   std::array<Notes, gathered_kinds> notes_;
-  std::vector<std::uint64_t> peers_;  // of a stray (Peers::masks)
+  std::vector<std::uint64_t>
+      mirror_neighbours_;  // of an off-grid point (MirrorNeighbourhood::masks)
   std::uint64_t camera_rays_ = 0;
   bool any_lobe_ = false;
   std::optional<Neighbours> of_surface_, of_material_;  // who shares diffuse light, and lobes

@@ -34,22 +34,22 @@ bool GatherField::place_mirrored(const Ray& ray, const scenes::Hit& hit, GatherP
   return true;
 }
 
-void GatherField::find_peers() {
-  peers_.assign(strays_.size(), 0U);
-  for (std::size_t k = 0; k < strays_.size(); ++k) {
+void GatherField::find_mirror_neighbours() {
+  mirror_neighbours_.assign(off_grid_points_.size(), 0U);
+  for (std::size_t k = 0; k < off_grid_points_.size(); ++k) {
     const GatherPoint& point = points_[grid_ + k];
     if (point.mirror == seen_straight || !setting_.shares) continue;
-    const auto [x, y] = place_of(strays_[k].pixel);
+    const auto [x, y] = place_of(off_grid_points_[k].pixel);
     std::uint64_t bit = 1U;
     for (int qy = y - tuning::mirror_reach_px; qy <= y + tuning::mirror_reach_px; ++qy) {
       for (int qx = x - tuning::mirror_reach_px; qx <= x + tuning::mirror_reach_px;
            ++qx, bit <<= 1U) {
         if (!window_.contains(qx, qy)) continue;
-        const std::size_t end = first_stray_[window_.index(qx, qy) + 1];
-        if (end == first_stray_[window_.index(qx, qy)]) continue;
+        const std::size_t end = first_off_grid_[window_.index(qx, qy) + 1];
+        if (end == first_off_grid_[window_.index(qx, qy)]) continue;
         const GatherPoint& other = points_[grid_ + end - 1];
         if (other.material == point.material && stands_for(other, sighting_of(point))) {
-          peers_[k] |= bit;
+          mirror_neighbours_[k] |= bit;
         }
       }
     }

@@ -56,7 +56,7 @@ RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t
         const auto u = places.point2(static_cast<std::uint32_t>(k));
         in_x[k] = double(u[0]), in_y[k] = double(u[1]);
       }
-      const auto met = look(pixel_of(p), in_x, in_y, drawn, end);
+      const auto met = trace_pixel(pixel_of(p), in_x, in_y, drawn, end);
       counts.camera += end - drawn;
       for (; drawn < end; ++drawn) {
         GatherPoint found;
@@ -68,7 +68,7 @@ RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t
           continue;
         }
         // Only where camera samples read this point: it stands for the mean over just these places.
-        // At a first look, which does not know yet what is near, that is the footprint.
+        // For initial samples, which do not know yet what is near, that is the footprint.
         const bool far = points_[p].reach_m == std::numeric_limits<float>::max() &&
                          glm::length(found.position - points_[p].position) > own_radius(p);
         if (far || find_in(x, y, sighting_of(found)) != p) continue;
@@ -80,8 +80,8 @@ RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t
   return origins;
 }
 
-// A stray lies anywhere in its pixel: if it stands for the mean over the pixel, all of the pixel
-// has to read it.
+// A off-grid point lies anywhere in its pixel: if it stands for the mean over the pixel, all of the
+// pixel has to read it.
 float GatherField::own_radius(std::size_t p) const {
   const float radius = footprint_radius(points_[p]);
   return p >= grid_ && origins_at(p) > 1 ? 2.0F * radius : radius;
@@ -103,7 +103,7 @@ std::size_t GatherField::find_in(int x, int y, const Sighting& place) const {
   if (!window_.contains(x, y)) return no_point;
   const std::size_t own = window_.index(x, y);
   if (stands_for(points_[own], place)) return if_near(own);
-  for (std::size_t k = first_stray_[own]; k < first_stray_[own + 1]; ++k) {
+  for (std::size_t k = first_off_grid_[own]; k < first_off_grid_[own + 1]; ++k) {
     if (stands_for(points_[grid_ + k], place)) return if_near(grid_ + k);
   }
   return no_point;
@@ -159,7 +159,7 @@ std::size_t GatherField::find_beside(int x, int y, const Sighting& place, Gather
       if (!window_.contains(qx, qy)) continue;
       const std::size_t pixel = window_.index(qx, qy);
       consider(pixel);
-      for (std::size_t k = first_stray_[pixel]; k < first_stray_[pixel + 1]; ++k) {
+      for (std::size_t k = first_off_grid_[pixel]; k < first_off_grid_[pixel + 1]; ++k) {
         consider(grid_ + k);
       }
     }

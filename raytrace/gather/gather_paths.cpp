@@ -48,7 +48,8 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
             return;
           }
           base::Rng rng(key.with(k));
-          walker.select_sun_stratum(random_number_of(p), first / 2 + k, half);  // neighbours: another first
+          walker.select_sun_stratum(random_number_of(p), first / 2 + k,
+                                    half);  // neighbours: another first
           const auto u = directions.point2(k);
           const RayStart& start = origins.start[k % origins.count];
           if (lobe) {
@@ -96,8 +97,8 @@ void GatherField::lobe_sample(std::uint32_t material, const RayStart& start,
   const scenes::Hit hit = world_.query.closest(origin, direction);
   incoming_.add(hit, direction, {}, weight, sum, counts);
   if (!setting_.gathers_residual || hit.missed()) return;
-  const auto lacking = walker.residual(incoming_, {origin, direction}, hit, {}, rng);
-  for (std::size_t layer = 0; layer < image_layers_; ++layer) sum[layer] += weight * lacking[layer];
+  const auto residual = walker.residual(incoming_, {origin, direction}, hit, {}, rng);
+  for (std::size_t layer = 0; layer < image_layers_; ++layer) sum[layer] += weight * residual[layer];
 }
 
 }  // namespace earthshine::raytrace

@@ -19,10 +19,10 @@ using scenes::HitPacket;
 using scenes::RayPacket;
 
 // Where eight rays cross a pixel: in columns one after another, in rows after van der Corput.
-constexpr std::array<double, packet_width> stray_columns = {0.0625, 0.1875, 0.3125, 0.4375,
-                                                            0.5625, 0.6875, 0.8125, 0.9375};
-constexpr std::array<double, packet_width> stray_rows = {0.0625, 0.5625, 0.3125, 0.8125,
-                                                         0.1875, 0.6875, 0.4375, 0.9375};
+constexpr std::array<double, packet_width> off_grid_columns = {0.0625, 0.1875, 0.3125, 0.4375,
+                                                               0.5625, 0.6875, 0.8125, 0.9375};
+constexpr std::array<double, packet_width> off_grid_rows = {0.0625, 0.5625, 0.3125, 0.8125,
+                                                            0.1875, 0.6875, 0.4375, 0.9375};
 constexpr float rounding = 0.02F;  // of positions, over the points' spacing
 
 scenes::Hit hit_of(const HitPacket& hits, std::size_t k) {
@@ -92,8 +92,9 @@ std::vector<GatherField::Found> GatherField::find_points() {
           const std::size_t index = window_.index(tile.x + static_cast<int>(k), y);
           place(rays[k], hit_of(hits, k), points_[index], start_[index]);
           Found mirrored;
-          mirrored.stray = {static_cast<std::uint32_t>(index), no_base,
-                            region_of(index, static_cast<std::size_t>(window_.columns)), 1.0F};
+          mirrored.off_grid_point = {static_cast<std::uint32_t>(index), no_base,
+                                     region_of(index, static_cast<std::size_t>(window_.columns)),
+                                     1.0F};
           if (place_mirrored(rays[k], hit_of(hits, k), mirrored.point, mirrored.start)) {
             shown[t].push_back(mirrored);
           }
@@ -107,9 +108,11 @@ std::vector<GatherField::Found> GatherField::find_points() {
   return all;
 }
 
-std::array<GatherField::Met, packet_width> GatherField::look(std::size_t pixel, const Places& x_of,
-                                                             const Places& y_of, std::size_t first,
-                                                             std::size_t end) const {
+std::array<GatherField::Met, packet_width> GatherField::trace_pixel(std::size_t pixel,
+                                                                    const Places& x_of,
+                                                                    const Places& y_of,
+                                                                    std::size_t first,
+                                                                    std::size_t end) const {
   const auto [x, y] = place_of(pixel);
   RayPacket packet{};
   HitPacket hits;
@@ -124,7 +127,7 @@ std::array<GatherField::Met, packet_width> GatherField::look(std::size_t pixel, 
 }
 
 // Looks at pixels about which not all centres lie on one surface once more, by eight rays.
-void GatherField::find_strays(const std::vector<Found>& mirrored) {
+void GatherField::find_off_grid_points(const std::vector<Found>& mirrored) {
   std::vector<std::vector<Found>> found(tile_count(window_));
   even_.assign(grid_, 0);
   std::atomic<std::uint64_t> rays{0};
@@ -142,37 +145,39 @@ void GatherField::find_strays(const std::vector<Found>& mirrored) {
     even_[own] = even ? 1 : 0;
     if (even) return;
     rays += packet_width;
-    for (const Met& met : look(own, stray_columns, stray_rows)) {
+    for (const Met& met : trace_pixel(own, off_grid_columns, off_grid_rows)) {
       Found more;
       if (!place(met.ray, met.hit, more.point, more.start)) continue;
       if (points_[own].reach_m > 0.0F && alike(points_[own], more.point)) continue;
       auto same = std::find_if(of_tile.begin() + static_cast<std::ptrdiff_t>(first), of_tile.end(),
                                [&](const Found& one) { return alike(one.point, more.point); });
       if (same == of_tile.end()) {
-        more.stray.pixel = static_cast<std::uint32_t>(own);
+        more.off_grid_point.pixel = static_cast<std::uint32_t>(own);
         same = of_tile.insert(same, more);
       }
-      same->stray.cover += 1.0F / packet_width;
+      same->off_grid_point.cover += 1.0F / packet_width;
     }
     // Slivers are not worth a point of their own.
     const auto from = of_tile.begin() + static_cast<std::ptrdiff_t>(first);
-    of_tile.erase(
-        std::remove_if(from, of_tile.end(),
-                       [](const Found& one) { return one.stray.cover < tuning::least_cover; }),
-        of_tile.end());
+    of_tile.erase(std::remove_if(from, of_tile.end(),
+                                 [](const Found& one) {
+                                   return one.off_grid_point.cover < tuning::least_cover;
+                                 }),
+                  of_tile.end());
     for (std::size_t k = first; k < of_tile.size(); ++k) {
-      Stray& stray = of_tile[k].stray;
-      stray.base = no_base;
+      OffGridPoint& off_grid_point = of_tile[k].off_grid_point;
+      off_grid_point.base = no_base;
       const int rings = setting_.shares ? 2 : 0;
-      for (int ring = 1; ring <= rings && stray.base == no_base; ++ring) {
+      for (int ring = 1; ring <= rings && off_grid_point.base == no_base; ++ring) {
         each_neighbour(window_, x, y, ring, [&](std::size_t q) {
-          if (stray.base == no_base && points_[q].reach_m > 0.0F &&
+          if (off_grid_point.base == no_base && points_[q].reach_m > 0.0F &&
               alike(of_tile[k].point, points_[q])) {
-            stray.base = static_cast<std::uint32_t>(q);
+            off_grid_point.base = static_cast<std::uint32_t>(q);
           }
         });
       }
-      stray.region = region_of(stray.pixel, static_cast<std::size_t>(window_.columns));
+      off_grid_point.region =
+          region_of(off_grid_point.pixel, static_cast<std::size_t>(window_.columns));
     }
   };
   base::parallel_chunks(found.size(), 1, [&](std::size_t t, std::size_t) {
@@ -185,17 +190,17 @@ void GatherField::find_strays(const std::vector<Found>& mirrored) {
   if (!mirrored.empty()) found.push_back(mirrored);
   std::vector<std::uint32_t> of_pixel(grid_ + 1, 0U);
   for (const auto& tile : found) {
-    for (const Found& one : tile) ++of_pixel[one.stray.pixel + 1U];
+    for (const Found& one : tile) ++of_pixel[one.off_grid_point.pixel + 1U];
   }
   std::partial_sum(of_pixel.begin(), of_pixel.end(), of_pixel.begin());
-  first_stray_ = of_pixel;
-  strays_.resize(of_pixel.back());
-  points_.resize(grid_ + strays_.size());
+  first_off_grid_ = of_pixel;
+  off_grid_points_.resize(of_pixel.back());
+  points_.resize(grid_ + off_grid_points_.size());
   start_.resize(points_.size());
   for (const auto& tile : found) {
     for (const Found& one : tile) {
-      const std::size_t at = of_pixel[one.stray.pixel]++;
-      strays_[at] = one.stray;
+      const std::size_t at = of_pixel[one.off_grid_point.pixel]++;
+      off_grid_points_[at] = one.off_grid_point;
       points_[grid_ + at] = one.point;
       start_[grid_ + at] = one.start;
     }
@@ -231,7 +236,7 @@ std::vector<std::size_t> GatherField::points_of_tile(std::size_t t) const {
     for (int x = tile.x; x < tile.x + tile.columns; ++x) {
       const std::size_t pixel = window_.index(x, y);
       points.push_back(pixel);
-      for (std::size_t k = first_stray_[pixel]; k < first_stray_[pixel + 1]; ++k) {
+      for (std::size_t k = first_off_grid_[pixel]; k < first_off_grid_[pixel + 1]; ++k) {
         points.push_back(grid_ + k);
       }
     }
@@ -246,7 +251,7 @@ std::uint64_t GatherField::random_number_of(std::size_t point) const {
   const std::uint64_t number = y * static_cast<std::uint64_t>(camera_.columns) + x;
   const std::uint64_t all =
       static_cast<std::uint64_t>(camera_.columns) * static_cast<std::uint64_t>(camera_.rows);
-  return point < grid_ ? number : number + all * (1 + point - grid_ - first_stray_[pixel]);
+  return point < grid_ ? number : number + all * (1 + point - grid_ - first_off_grid_[pixel]);
 }
 
 }  // namespace earthshine::raytrace

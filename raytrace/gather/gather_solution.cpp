@@ -56,8 +56,8 @@ class SolutionRays {
     std::array<float, packet_width> cosine;
     GatherRays::make(points_, first, offset, j, samples, rays, cosine);
     query_.closest(rays, count, hits);
-    RayShare share;
-    share.found_rays = static_cast<double>(rays_.rays());
+    MisContext share;
+    share.cosine_samples = static_cast<double>(rays_.rays());
     share.aimed_rays = aimed;
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t p = first + offset + k;

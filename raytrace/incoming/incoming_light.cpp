@@ -27,7 +27,7 @@ void IncomingLight::see_sky(const Vec3& direction, const Rgb& weight, std::span<
 // Through glass that does not bend them aimed rays come to bright patches, too; all else that
 // mirrors and glass show is left to the others.
 void IncomingLight::follow_specular(const scenes::Hit& first, const Vec3& along,
-                                    const RayShare& share, Rgb weight, std::span<Rgb> out,
+                                    const MisContext& share, Rgb weight, std::span<Rgb> out,
                                     RayCounts& rays) const {
   const bool aimed = share.aimed_at != radiosity::no_patch;
   bool glass = false;  // the last surface
@@ -39,7 +39,7 @@ void IncomingLight::follow_specular(const scenes::Hit& first, const Vec3& along,
         return false;
       }
       const bool straight = scenes::goes_straight_on(along, direction);
-      const double kept = straight ? kept_part(hit, direction, share) : 1.0;
+      const double kept = straight ? residual_weight(hit, direction, share) : 1.0;
       if (!table_.empty() && kept > 0.0) table_.add(hit, weight * kept, out);
       if ((aimed && kept > 0.0) || step == scenes::most_specular_steps) return false;
     }
@@ -51,8 +51,8 @@ void IncomingLight::follow_specular(const scenes::Hit& first, const Vec3& along,
   scenes::follow_specular(scene_, query_, first, along, aimed, visit);
 }
 
-double IncomingLight::kept_part(const scenes::Hit& hit, const Vec3& direction,
-                                const RayShare& share) const {
+double IncomingLight::residual_weight(const scenes::Hit& hit, const Vec3& direction,
+                                      const MisContext& share) const {
   if (share.cosine <= 0.0) return 1.0;
   const radiosity::Patches& patches = bright_.patches();
   const std::uint32_t patch = patches.find(hit.triangle, hit.u, hit.v, hit.front);
@@ -67,18 +67,18 @@ double IncomingLight::kept_part(const scenes::Hit& hit, const Vec3& direction,
   const double density =
       bright_.density_per_sr(share.from, patch, distance_m,
                              glm::dot(direction, patches.normal_at(hit.triangle, hit.front)));
-  const double found = share.found_rays * share.cosine / pi;
+  const double found = share.cosine_samples * share.cosine / pi;
   return found / (found + share.aimed_rays * density);
 }
 
-double IncomingLight::add(const scenes::Hit& hit, const Vec3& direction, const RayShare& share,
+double IncomingLight::add(const scenes::Hit& hit, const Vec3& direction, const MisContext& share,
                           const Rgb& weight, std::span<Rgb> out, RayCounts& rays) const {
   const bool aimed = share.aimed_at != radiosity::no_patch;
   if (hit.missed()) {
     if (!aimed) see_sky(direction, weight, out, true);
     return 0.0;
   }
-  const double kept = kept_part(hit, direction, share);
+  const double kept = residual_weight(hit, direction, share);
   if (!table_.empty() && kept > 0.0) table_.add(hit, weight * kept, out);
   if (follows_specular_ && !(aimed && kept > 0.0) && !is_dark()) {
     follow_specular(hit, direction, share, weight, out, rays);
@@ -87,7 +87,7 @@ double IncomingLight::add(const scenes::Hit& hit, const Vec3& direction, const R
 }
 
 IncomingLight::Aimed IncomingLight::aim(const BrightPatches::Place& from, double choice, double x,
-                                        double y, double found_rays, double aimed_rays) const {
+                                        double y, double cosine_samples, double aimed_rays) const {
   Aimed aimed;
   const std::optional<BrightPatches::Aim> target = bright_.aim(from, choice, x, y);
   if (!target) return aimed;
@@ -99,8 +99,8 @@ IncomingLight::Aimed IncomingLight::aim(const BrightPatches::Place& from, double
   const double at_patch = -glm::dot(aimed.direction, target->normal);
   if (cosine <= 0.0 || at_patch <= 0.0) return aimed;
   const double density = bright_.density_per_sr(from, target->patch, distance, at_patch);
-  aimed.weight = (cosine / pi) / (found_rays * cosine / pi + aimed_rays * density);
-  aimed.share = {cosine, from, target->patch, target->triangle, found_rays, aimed_rays};
+  aimed.weight = (cosine / pi) / (cosine_samples * cosine / pi + aimed_rays * density);
+  aimed.share = {cosine, from, target->patch, target->triangle, cosine_samples, aimed_rays};
   return aimed;
 }
 

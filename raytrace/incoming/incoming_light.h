@@ -19,12 +19,12 @@ namespace earthshine::raytrace {
 
 // How a ray shares its work with rays aimed at bright patches (multiple importance sampling,
 // balance heuristic).
-struct RayShare {
+struct MisContext {
   double cosine = 0.0;  // at the surface it left; 0: it shares with no other ray
   BrightPatches::Place from;
-  std::uint32_t aimed_at = radiosity::no_patch;  // the patch that an aimed ray must meet to count
-  std::uint32_t triangle = scenes::no_triangle;  // and of a cluster the triangle
-  double found_rays = 1.0, aimed_rays = 1.0;     // cast from that surface point each way
+  std::uint32_t aimed_at = radiosity::no_patch;   // the patch that an aimed ray must meet to count
+  std::uint32_t triangle = scenes::no_triangle;   // and of a cluster the triangle
+  double cosine_samples = 1.0, aimed_rays = 1.0;  // cast from that surface point each way
 };
 
 class IncomingLight {
@@ -46,7 +46,7 @@ class IncomingLight {
   // straight from the sky is added to its last entry as well.
   // Rays that go on from mirrors and glass are counted in `rays`. Returns the kept part of what
   // surfaces send.
-  double add(const scenes::Hit& hit, const Vec3& direction, const RayShare& share,
+  double add(const scenes::Hit& hit, const Vec3& direction, const MisContext& share,
              const Rgb& weight, std::span<Rgb> out, RayCounts& rays) const;
 
   // Whether no ray brings anything: there is no solution, and the sky is no part of it.
@@ -56,23 +56,23 @@ class IncomingLight {
 
   // The weight of the ray's end, of all rays that may find it, from `share`; there may be glass
   // before it that does not bend the ray.
-  [[nodiscard]] double kept_part(const scenes::Hit& hit, const Vec3& direction,
-                                 const RayShare& share) const;
+  [[nodiscard]] double residual_weight(const scenes::Hit& hit, const Vec3& direction,
+                                       const MisContext& share) const;
 
   // The ray aimed at a bright patch from a surface point, and its weight for reflected radiance
-  // k_d / pi E: (cosine / pi) / (found_rays cosine / pi + aimed_rays density). Weight 0: it leads
-  // nowhere.
+  // k_d / pi E: (cosine / pi) / (cosine_samples cosine / pi + aimed_rays density). Weight 0: it
+  // leads nowhere.
   struct Aimed {
     Vec3 direction{0.0};
     double weight = 0.0;
-    RayShare share;
+    MisContext share;
   };
   [[nodiscard]] Aimed aim(const BrightPatches::Place& from, double choice, double x, double y,
-                          double found_rays, double aimed_rays) const;
+                          double cosine_samples, double aimed_rays) const;
 
  private:
   void see_sky(const Vec3& direction, const Rgb& weight, std::span<Rgb> out, bool straight) const;
-  void follow_specular(const scenes::Hit& first, const Vec3& along, const RayShare& share,
+  void follow_specular(const scenes::Hit& first, const Vec3& along, const MisContext& share,
                        Rgb weight, std::span<Rgb> out, RayCounts& rays) const;
   const scenes::Scene& scene_;
   const scenes::RayQuery& query_;

@@ -9,13 +9,13 @@
 namespace earthshine::raytrace {
 
 std::span<const Rgb> PathWalker::residual(const IncomingLight& solution, const Ray& ray,
-                                          const scenes::Hit& first, const RayShare& share,
+                                          const scenes::Hit& first, const MisContext& share,
                                           base::Rng& rng) {
   begin(ray, rng);
   sees_sampled_ = from_camera_ = false;
   turn();
   share_ = share;
-  kept_ = solution.kept_part(first, ray.direction, share);
+  kept_ = solution.residual_weight(first, ray.direction, share);
   follow(solution, first);
   return finished();
 }
@@ -29,7 +29,7 @@ std::span<const Rgb> PathWalker::residual_at(const IncomingLight& solution, cons
   if (!turn_diffusely(solution, origin, normal, u, v)) return finished();
   const scenes::Hit hit = world_.query.closest(ray_.origin, ray_.direction);
   if (hit.missed()) return finished();
-  kept_ = solution.kept_part(hit, ray_.direction, share_);
+  kept_ = solution.residual_weight(hit, ray_.direction, share_);
   follow(solution, hit);
   return finished();
 }
@@ -83,7 +83,7 @@ bool PathWalker::turn_diffusely(const IncomingLight& solution, const Vec3& origi
   weight_ /= 1.0 - tuning::aimed_share;
   share_.cosine = local.z;
   share_.from = {origin, normal};
-  share_.found_rays = 1.0 - tuning::aimed_share;
+  share_.cosine_samples = 1.0 - tuning::aimed_share;
   share_.aimed_rays = tuning::aimed_share;
   return true;
 }

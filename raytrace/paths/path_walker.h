@@ -48,7 +48,7 @@ class PathWalker {
   // An unbiased estimate of L - L~ along a ray that left a diffuse or glossy surface and met
   // `first`; L~ is what `solution` reads there. Of rays that share with others, its part.
   [[nodiscard]] std::span<const Rgb> residual(const IncomingLight& solution, const Ray& ray,
-                                              const scenes::Hit& first, const RayShare& share,
+                                              const scenes::Hit& first, const MisContext& share,
                                               base::Rng& rng);
   // The mean over the cosine-weighted hemisphere of L - L~ that arrives at a surface point, by one
   // ray; (u, v) in [0, 1)^2 choose its direction, if it is not aimed at a bright patch.
@@ -117,7 +117,7 @@ class PathWalker {
   bool met_surface_ = false;
   double source_luminance_ = 0.0;
   std::size_t sun_stratum_ = 0;
-  RayShare share_;                 // of the last ray, with those aimed at bright patches
+  MisContext share_;                 // of the last ray, with those aimed at bright patches
   double kept_ = 1.0;              // its part of what the surface sends that it met
   bool goes_straight_on_ = false;  // as before that surface: through glass
 };

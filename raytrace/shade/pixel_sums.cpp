@@ -60,8 +60,7 @@ PixelSums::PixelSums(const Window& of, std::size_t layers, bool splits_parts,
       luminance2(of.pixel_count(), 0.0),
       half_difference(of.pixel_count(), 0.0),
       source(of.pixel_count()),
-      rays(of.pixel_count(), 0.0F),
-      scatter(of.pixel_count(), 0.0F) {
+      rays(of.pixel_count(), 0.0F) {
   if (layers < 2) return;
   const std::size_t step = layer_noise_step(samples.size());
   const Window picture{0, 0, columns, 0};
@@ -120,7 +119,6 @@ void PixelSums::add(std::size_t pixel, const PixelShader& shader, std::uint32_t 
   source[pixel].luminance += shader.source().luminance;
   source[pixel].luminance2 += shader.source().luminance2;
   source[pixel].reflecting += shader.source().reflecting;
-  if (first == 0) scatter[pixel] = static_cast<float>(shader.scatter());
   samples[pixel] += count;
   std::vector<FieldTerm>& of_pixel = terms[pixel];
   for (const FieldTerm& more : shader.field_terms()) {
@@ -152,13 +150,6 @@ double PixelSums::sample_variance(std::size_t pixel) const {
   // Rounding leaves a few units of double precision where all samples are alike.
   const double spread = luminance2[pixel] - sum * sum / n;
   return spread > 1e-12 * luminance2[pixel] ? spread / (n - 1.0) / n : 0.0;
-}
-
-double PixelSums::deviation(std::size_t pixel, double bright) const {
-  const double n = samples[pixel];
-  if (n < 2.0) return 0.0;
-  const double mean = luminance[pixel] / n;
-  return std::sqrt(sample_variance(pixel) * n) * (mean > bright ? bright / mean : 1.0);
 }
 
 double PixelSums::squared_error(std::size_t pixel) const {
@@ -228,7 +219,6 @@ void PixelSums::pass(std::size_t pixel, base::Parcel& parcel) {
   parcel.pass(half_difference[pixel]);
   parcel.pass(source[pixel]);
   parcel.pass(rays[pixel]);
-  parcel.pass(scatter[pixel]);
   parcel.pass_range(layers_of(pixel).data(), layers_of(pixel).size());
 }
 
@@ -242,12 +232,11 @@ std::uint32_t samples_for_edge(double contrast) {
 }
 
 // The greatest of a pixel's eight neighbours in the window.
-template <class Number>
-std::vector<Number> greatest_around(const Window& window, std::span<const Number> values) {
-  std::vector<Number> greatest(values.size(), std::numeric_limits<Number>::lowest());
+std::vector<float> greatest_around(const Window& window, std::span<const float> values) {
+  std::vector<float> greatest(values.size(), std::numeric_limits<float>::lowest());
   for (int y = window.y; y < window.y + window.rows; ++y) {
     for (int x = window.x; x < window.x + window.columns; ++x) {
-      Number& of_pixel = greatest[window.index(x, y)];
+      float& of_pixel = greatest[window.index(x, y)];
       for (int dy = -1; dy <= 1; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) {
           if ((dx == 0 && dy == 0) || !window.contains(x + dx, y + dy)) continue;
@@ -260,24 +249,6 @@ std::vector<Number> greatest_around(const Window& window, std::span<const Number
 }
 
 }  // namespace
-
-std::vector<std::uint32_t> wanted_samples(const PixelSums& sums, double per_deviation,
-                                          double bright, int least, int most) {
-  std::vector<double> deviation(sums.samples.size());
-  for (std::size_t p = 0; p < deviation.size(); ++p) {
-    deviation[p] = sums.deviation(p, bright);
-  }
-  const std::vector<double> noisiest =
-      greatest_around(sums.window, std::span<const double>(deviation));
-  std::vector<std::uint32_t> wanted(sums.samples.size());
-  for (std::size_t p = 0; p < wanted.size(); ++p) {
-    const double ideal = std::clamp(noisiest[p] / per_deviation, double(least), double(most));
-    const auto rounded = std::bit_ceil(static_cast<std::uint32_t>(ideal));
-    const std::uint32_t limit = std::max(static_cast<std::uint32_t>(least), 4 * sums.samples[p]);
-    wanted[p] = std::min({rounded, limit, static_cast<std::uint32_t>(most)});
-  }
-  return wanted;
-}
 
 double PixelSums::mean_luminance() const {
   double sum = 0.0, counted = 0.0;
@@ -309,8 +280,8 @@ std::vector<std::uint32_t> wanted_for_the_eye(const PixelSums& sums, std::span<c
     mean[p] = static_cast<float>(sums.luminance[p] / std::max(1U, sums.samples[p]));
     darkness[p] = -mean[p];
   }
-  const std::vector<float> high = greatest_around(sums.window, std::span<const float>(mean));
-  const std::vector<float> low = greatest_around(sums.window, std::span<const float>(darkness));
+  const std::vector<float> high = greatest_around(sums.window, mean);
+  const std::vector<float> low = greatest_around(sums.window, darkness);
   std::vector<std::uint32_t> wanted = sums.samples;
   for (std::size_t p = 0; p < wanted.size(); ++p) {
     if (double(around[p]) > tuning::most_scatter)

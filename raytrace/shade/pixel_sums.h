@@ -12,8 +12,8 @@
 
 namespace earthshine::raytrace {
 
-// RMS error of the share of a pixel that an edge covers, times n^(3/4), by n samples, spread evenly:
-// of edges in all directions and places (law SourceEdges).
+// RMS error of the share of a pixel that an edge covers, times n^(3/4), by n samples, spread
+// evenly: of edges in all directions and places (law SourceEdges).
 inline constexpr double error_of_edge = 0.27;
 
 struct PixelSums {
@@ -29,11 +29,10 @@ struct PixelSums {
   std::vector<double> half_difference;  // of the sums of even and odd samples' luminance
   std::vector<SourceSeen> source;
   std::vector<float> rays;  // cast for the samples, of all kinds
-  // Of the first samples in the light of one source (PixelShader::scatter); 0: nobody asked.
-  std::vector<float> scatter;
 
   std::vector<float> layers_differ;  // the same by layer, of pixels that are noted
-  // Of a pixel: 1 + its row in layers_differ, 0 where it is not noted; for how many pixels it stands.
+  // Of a pixel: 1 + its row in layers_differ, 0 where it is not noted; for how many pixels it
+  // stands.
   std::vector<std::uint32_t> noted_row;
   std::vector<float> stands_for;  // by row
   // Of spots smaller than the pixel, which the witness expects there; empty: none.
@@ -49,15 +48,11 @@ struct PixelSums {
   [[nodiscard]] LayerNoise layer_noise(int columns) const;
   // Of the mean luminance, from the spread of the samples alone.
   [[nodiscard]] double sample_variance(std::size_t pixel) const;
-  // Standard deviation of one sample's luminance. Pixels brighter than `bright` are wanted as exact
-  // in proportion, not more: theirs is scaled down to that luminance, or glints and lamps would
-  // take all samples.
-  [[nodiscard]] double deviation(std::size_t pixel, double bright) const;
   // The squared error of the mean, from the pixel's two halves alone: right on average over pixels.
   // Where the witness expects a spot, no less than its edge leaves on the average: a few pixels may
   // hold most of a picture's error, and their halves agree by chance.
   // A single sample has no halves: it takes those of the pixel at the upper left of its square of
-  // four (Passes::first_round), by as much as fewer samples are further off.
+  // four (AdaptiveRender::shade_initial), by as much as fewer samples are further off.
   [[nodiscard]] double squared_error(std::size_t pixel) const;
   // Whether the pixel shows a surface that reflects and no edge of a source itself.
   [[nodiscard]] bool counts(std::size_t pixel) const;
@@ -83,13 +78,6 @@ void shade_samples(const ShadingScene& shared, const CameraModel& camera,
                    const std::vector<std::uint32_t>& wanted, PixelSums& sums, RayCounts& rays,
                    const std::function<bool()>& stop,
                    const std::function<void(std::uint64_t samples)>& progress);
-
-// Samples that give the picture the least error for their number are proportional to each pixel's
-// standard deviation: deviation / per_deviation, within [least, most], at most four times what the
-// pixel has. The deviation is that of the noisiest of the eight neighbours: a pixel's own samples
-// would stop where they happen to agree, and its mean would be biased. bright: as in deviation().
-[[nodiscard]] std::vector<std::uint32_t> wanted_samples(const PixelSums& sums, double per_deviation,
-                                                        double bright, int least, int most);
 
 // Up to four times as many as there are where samples of a neighbour scatter by more than a third
 // of its luminance, or of `dimmest`, or where neighbours differ from each other by as much: the eye

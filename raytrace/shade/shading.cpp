@@ -58,7 +58,6 @@ void PixelShader::begin_pixel(const CameraModel& camera, int x, int y, std::size
   std::fill(sums_.begin(), sums_.end(), Rgb(0.0));
   sample_luminance_.assign(count, 0.0);
   halves_differ_.assign(by_layer ? shared_.layers : 0, 0.0);
-  by_light_.assign(shared_.dimmest.size() * count, 0.0);
   const base::Key key(shared_.seed, base::Stream::FinalGather, pixel_);
   gather_points_ = {base::SobolOwen4(key.with(0)), base::SobolOwen4(key.with(1))};
 }
@@ -172,7 +171,7 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
             depth == 0 ? Part::Indirect : Part::Specular,
             weight * surface.brdf.diffuse * scene.ambient_radiance);
       }
-      diffuse(surface, hit, weight, depth);
+      diffuse(surface, weight, depth);
     }
     if (base::is_lit(material.specular) && shared_.gathers) lobe(surface, weight, depth);
   }

@@ -18,35 +18,21 @@
 
 namespace earthshine::raytrace {
 
-// Where the light of a surface that the camera sees itself is read from.
-enum class DiffuseSource {
-  Field,    // the pixel's gather point; gather rays of its own where there is none
-  Gather,   // gather rays of every camera sample
-  Solution  // the radiosity solution: noise-free and coarse, for planning
-};
-
 // What all pixels share; read only.
 struct ShadingScene : scenes::World {
   const LightSampler& lights;
-  const RadianceTable& soft_radiance;   // what surfaces seen in mirrors read
   const IncomingLight& incoming;        // along gather rays
   std::vector<std::size_t> layer = {};  // of a light group: its image layer
   std::size_t layers = 1;
   bool splits_parts = false;  // sums also by Part
-  // What a picture may be weighted to show alone: each lamp and Sun, the Earth with all its cells.
-  std::vector<std::size_t> light_of_layer = {};
-  // Of such a light: luminance from which on its scatter is over its own; none: nobody asks.
-  std::vector<double> dimmest = {};
   Indirect indirect = Indirect::Radiosity;
   bool gathers = false;  // cosine rays carry light in this render
   // Of paths that go on from where gather and lobe rays end, to find what the solution lacks there;
   // nullptr: there is no solution.
   const PathWorld* world = nullptr;
-  DiffuseSource diffuse = DiffuseSource::Gather;
-  const GatherField* field = nullptr;      // with DiffuseSource::Field
+  const GatherField* field = nullptr;      // nullptr: `gathers` is false
   Vec3 sighting_origin{0.0};               // of Sighting::position
   PixelFilter filter{scenes::Camera{}};    // of the camera samples
-  int gather_rays = 16;                    // per camera sample
   std::uint64_t seed = 1;                  // of camera and gather rays
   std::uint64_t lamp_seed = 1;             // of shadow and lobe rays
   std::vector<bool> sampled_emitter = {};  // per material: shadow rays carry its light
@@ -89,9 +75,6 @@ class PixelShader {
   [[nodiscard]] const SourceSeen& source() const { return source_; }
   // Of each layer, the luminance that samples of the first half brought less that of the second.
   [[nodiscard]] std::span<const double> halves_differ() const { return halves_differ_; }
-  // The most that samples scatter in the light of one source, of those that ShadingScene::dimmest
-  // has: their standard deviation over their mean, or over what is dimmest.
-  [[nodiscard]] double scatter() const;
   // What the samples read from gather points, which is in their luminance but not in sums().
   [[nodiscard]] std::span<const FieldTerm> field_terms() const { return terms_; }
   [[nodiscard]] RayCounts rays() const;  // all that were cast for samples so far
@@ -119,7 +102,7 @@ class PixelShader {
   void see_sky(const Vec3& direction, const Rgb& weight, int depth, Seen seen);
   bool see_lamp(const Ray& ray, double nearer_than_m, const Rgb& weight, int depth);
   void direct(const Ray& ray, const Surface& surface, const Rgb& weight, int depth);
-  void diffuse(const Surface& surface, const scenes::Hit& hit, const Rgb& weight, int depth);
+  void diffuse(const Surface& surface, const Rgb& weight, int depth);
   // Whether gather points may stand for what is met after so many mirrors and panes.
   [[nodiscard]] bool has_points(int depth) const {
     return shared_.field != nullptr && depth == (mirror_ ? 1 : 0);
@@ -129,7 +112,6 @@ class PixelShader {
   bool read_field(const Surface& surface, const Rgb& weight);
   bool read_lobe(const Surface& surface, const Rgb& weight);
   FieldTerm& term_of(std::size_t point);
-  void read_solution(const scenes::Hit& hit, const Rgb& weight, int depth);
   void gather(const Surface& surface, const Rgb& weight, int depth);
   void lobe(const Surface& surface, const Rgb& weight, int depth);
   void mirror_and_glass(const Ray& ray, const Surface& surface, const Rgb& weight, int depth,
@@ -147,14 +129,14 @@ class PixelShader {
   struct GatherRay {
     Vec3 direction{0.0};
     Rgb weight{0.0};
-    RayShare share;
+    MisContext share;
     Part part = Part::Indirect;
     std::size_t sample = 0;
-    std::uint64_t number = 0;  // in the sample: the key of what follows it
-    double lacking = 1.0;      // } how much of that it stands for; 0: it is not followed
+    std::uint64_t number = 0;      // in the sample: the key of what follows it
+    double residual_weight = 1.0;  // of that path; 0: it is not followed
   };
   void queue_gather(const Vec3& origin, const GatherRay& ray);
-  void add_lacking(const GatherRay& ray, const scenes::Hit& hit);
+  void add_residual(const GatherRay& ray, const scenes::Hit& hit);
   void flush_gather();
   void add(std::size_t layer, std::size_t sample, Part part, const Rgb& radiance);
   void count_luminance(std::size_t layer, std::size_t sample, const Rgb& radiance) {
@@ -163,9 +145,6 @@ class PixelShader {
     if (!halves_differ_.empty()) {
       halves_differ_[layer] += sample % 2 == 0 ? luminance : -luminance;
     }
-    if (by_light_.empty()) return;
-    by_light_[shared_.light_of_layer[layer] * sample_luminance_.size() + sample - first_sample_] +=
-        luminance;
   }
 
   const ShadingScene& shared_;
@@ -173,7 +152,6 @@ class PixelShader {
   std::vector<Rgb> sums_;
   std::vector<Rgb> scratch_;  // one per layer, and what came straight from the sky
   std::vector<double> sample_luminance_, halves_differ_;
-  std::vector<double> by_light_;  // light * samples: luminance; empty: nobody asks
   std::size_t sample_ = 0, first_sample_ = 0;
   SourceSeen source_;
   double source_of_sample_ = 0.0;

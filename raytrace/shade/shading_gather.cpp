@@ -10,24 +10,11 @@ namespace earthshine::raytrace {
 
 using base::pi;
 
-void PixelShader::diffuse(const Surface& surface, const scenes::Hit& hit, const Rgb& weight,
-                          int depth) {
-  const bool planned = shared_.diffuse == DiffuseSource::Solution;
-  if (planned && shared_.indirect == Indirect::Radiosity) {
-    if (!shared_.soft_radiance.empty()) read_solution(hit, weight, depth);
-    return;
-  }
+void PixelShader::diffuse(const Surface& surface, const Rgb& weight, int depth) {
   if (!shared_.gathers) return;
   const Rgb reflected = weight * surface.brdf.diffuse;
   if (has_points(depth) && read_field(surface, reflected)) return;
   gather(surface, reflected, depth);
-}
-
-void PixelShader::read_solution(const scenes::Hit& hit, const Rgb& weight, int depth) {
-  std::fill(scratch_.begin(), scratch_.end(), Rgb(0.0));
-  shared_.soft_radiance.add(hit, weight, scratch_);
-  const Part part = depth == 0 ? Part::Indirect : Part::Specular;
-  for (std::size_t k = 0; k < shared_.layers; ++k) add(k, sample_, part, scratch_[k]);
 }
 
 GatherField::Reading PixelShader::read_points(const Surface& surface, Gathered kind) const {
@@ -82,14 +69,12 @@ bool PixelShader::read_lobe(const Surface& surface, const Rgb& weight) {
 void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   const base::Frame3 frame = base::frame_around(surface.brdf.normal);
   const Vec3 origin = surface.lifted();
-  const int count = depth > 0       ? tuning::rays_behind_mirror
-                    : shared_.field ? tuning::rays_without_point
-                                    : shared_.gather_rays;
+  const int count = depth > 0 ? tuning::rays_behind_mirror : tuning::rays_without_point;
   const bool shares = depth == 0 && !shared_.incoming.bright().empty();
   GatherRay ray;
   ray.sample = sample_;
   ray.part = depth == 0 ? Part::Indirect : Part::Specular;
-  ray.share.found_rays = count;
+  ray.share.cosine_samples = count;
   ray.share.from = {origin, surface.brdf.normal};
   // Cosine-distributed rays: L = (k_d / pi) integral L_in cos = k_d mean(L_in).
   ray.weight = weight / static_cast<double>(count);
@@ -107,8 +92,8 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
     ray.direction = frame.to_world({r * std::cos(phi), r * std::sin(phi), cosine});
     if (shares) ray.share.cosine = double(cosine);
     ray.number = ++gathered_;
-    // Beside a field one of them is followed for all: what it lacks is little, and finding it dear.
-    if (shared_.field != nullptr) ray.lacking = k == 0 ? count : 0.0;
+    // One of them is followed for all: the residual is small, and estimating it dear.
+    ray.residual_weight = k == 0 ? count : 0.0;
     queue_gather(origin, ray);
   }
   if (!shares) return;
@@ -120,7 +105,7 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   ray.direction = aimed.direction;
   ray.weight = weight * aimed.weight;
   ray.share = aimed.share;
-  ray.lacking = 1.0;
+  ray.residual_weight = 1.0;
   ray.number = ++gathered_;
   queue_gather(origin, ray);
 }
@@ -144,14 +129,14 @@ void PixelShader::queue_gather(const Vec3& origin, const GatherRay& ray) {
 }
 
 // What the solution lacks where the ray ended, by a path that goes on from there.
-void PixelShader::add_lacking(const GatherRay& ray, const scenes::Hit& hit) {
+void PixelShader::add_residual(const GatherRay& ray, const scenes::Hit& hit) {
   base::Rng rng(
       base::Key(shared_.seed, base::Stream::Residual, pixel_).with(ray.sample).with(ray.number));
   walker_->select_sun_stratum(pixel_ + ray.number, ray.sample / 2, ray.sample % 2);
-  const auto lacking =
+  const auto residual =
       walker_->residual(shared_.incoming, {Vec3(0.0), ray.direction}, hit, ray.share, rng);
   for (std::size_t layer = 0; layer < shared_.layers; ++layer) {
-    add(layer, ray.sample, ray.part, ray.lacking * ray.weight * lacking[layer]);
+    add(layer, ray.sample, ray.part, ray.residual_weight * ray.weight * residual[layer]);
   }
 }
 
@@ -169,23 +154,9 @@ void PixelShader::flush_gather() {
     for (std::size_t layer = 0; layer < shared_.layers; ++layer) {
       add(layer, ray.sample, part, scratch_[layer]);
     }
-    if (walker_ && ray.lacking > 0.0 && !hit.missed()) add_lacking(ray, hit);
+    if (walker_ && ray.residual_weight > 0.0 && !hit.missed()) add_residual(ray, hit);
   }
   gather_count_ = 0;
-}
-
-double PixelShader::scatter() const {
-  const std::size_t count = sample_luminance_.size();
-  double most = 0.0;
-  for (std::size_t light = 0; count > 1 && light < shared_.dimmest.size(); ++light) {
-    const std::span<const double> of_light(&by_light_[light * count], count);
-    double mean = 0.0, squares = 0.0;
-    for (const double luminance : of_light) mean += luminance / double(count);
-    for (const double luminance : of_light) squares += (luminance - mean) * (luminance - mean);
-    const double over = std::max(mean, shared_.dimmest[light]);
-    if (over > 0.0) most = std::max(most, std::sqrt(squares / double(count - 1)) / over);
-  }
-  return most;
 }
 
 }  // namespace earthshine::raytrace

@@ -29,22 +29,6 @@ std::size_t earth_layer(const scenes::LightGroups& groups, const RenderOptions& 
   return options.per_light && groups.earth != scenes::no_group ? groups.earth : 0;
 }
 
-bool recursive(const scenes::Effects& effects) {
-  return effects.mirror || effects.refraction || effects.phong;
-}
-
-std::vector<std::size_t> light_of_layer(const scenes::World& world, const RenderOptions& options) {
-  std::vector<std::size_t> light(image_layers(world.groups, options), 0);
-  if (!options.per_light) return light;
-  const std::size_t cells =
-      world.groups.earth == scenes::no_group ? 0 : scenes::earth_parts(world.scene);
-  for (std::size_t k = 1; k < light.size(); ++k) {
-    const bool same = k > world.groups.earth && k < world.groups.earth + cells;
-    light[k] = light[k - 1] + (same ? 0 : 1);
-  }
-  return light;
-}
-
 BrightPatches bright_of(const radiosity::Solution& solution, const RenderOptions& options) {
   return reads(solution, options) ? BrightPatches(solution) : BrightPatches();
 }
@@ -52,32 +36,25 @@ BrightPatches bright_of(const radiosity::Solution& solution, const RenderOptions
 }  // namespace
 
 ShadingSetup::ShadingSetup(const scenes::World& world, const radiosity::Solution& solution,
-                           const scenes::Camera& camera, const RenderOptions& options,
-                           const radiosity::Solution* aimed_at)
+                           const scenes::Camera& camera, const RenderOptions& options)
     : camera_(make_camera_model(camera, options.columns, options.rows)),
       sight_(leak_mask(world, solution, options)),
       all_(solution, values_if(reads(solution, options), solution.radiosity), options.per_light,
            sight_),
-      soft_(solution,
-            values_if(reads(solution, options) &&
-                          (recursive(world.effects) || options.shared.on || aimed_at != nullptr),
-                      solution.indirect_radiosity),
-            options.per_light, sight_),
       lights_(world, options.indirect, options.distributed_lights, options.per_light,
               earth_area(world.scene, options.distributed_over),
               world.query.specular_paths().mirrors()),
-      bright_(bright_of(aimed_at != nullptr ? *aimed_at : solution, options)),
+      bright_(bright_of(solution, options)),
       incoming_(world, all_, bright_, image_layers(world.groups, options),
                 earth_layer(world.groups, options),
                 world.effects.mirror || world.effects.refraction),
       world_{world, lights_, {}, {}, 1, PathSet::NoCaustics},
-      shared_{world, lights_, soft_, incoming_} {
+      shared_{world, lights_, incoming_} {
   shared_.indirect = options.indirect;
   shared_.layers = image_layers(world.groups, options);
   for (std::size_t g = 0; g < world.groups.count(); ++g) {
     shared_.layer.push_back(options.per_light ? g : 0);
   }
-  shared_.light_of_layer = light_of_layer(world, options);
   shared_.gathers = options.indirect != Indirect::Distributed &&
                     (reads(solution, options) || world.effects.earth_by_gather);
   shared_.sampled_emitter.assign(world.scene.materials.size(), true);

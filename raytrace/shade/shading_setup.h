@@ -8,11 +8,9 @@ namespace earthshine::raytrace {
 
 class ShadingSetup {
  public:
-  // All arguments must outlive it. aimed_at: the solution whose bright patches get rays aimed at
-  // them, if that is another one than is read.
+  // All arguments must outlive it.
   ShadingSetup(const scenes::World& world, const radiosity::Solution& solution,
-               const scenes::Camera& camera, const RenderOptions& options,
-               const radiosity::Solution* aimed_at = nullptr);
+               const scenes::Camera& camera, const RenderOptions& options);
   ShadingSetup(const ShadingSetup&) = delete;
   ShadingSetup& operator=(const ShadingSetup&) = delete;
 
@@ -24,7 +22,7 @@ class ShadingSetup {
  private:
   CameraModel camera_;
   LeakMask sight_;
-  RadianceTable all_, soft_;
+  RadianceTable all_;
   LightSampler lights_;
   BrightPatches bright_;
   IncomingLight incoming_;

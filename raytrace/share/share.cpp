@@ -34,7 +34,7 @@ class Sharer {
 
   Shared run() {
     shared_.layers = estimate_.layers;
-    shared_.resize(estimate_.samples.size());  // strays follow
+    shared_.resize(estimate_.samples.size());  // off-grid points follow
     for (std::vector<float>& of : keep_) of.assign(points_, 0.0F);
     signs_ = draw_signs(neighbours_, estimate_);
     if (all_) {
@@ -201,8 +201,8 @@ class Sharer {
     find_signals(level, squares_, expected_, shared_);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
-        keep_[level][p] =
-            kept_share(shared_.signal[level][p], shared_.noise[level][p], shared_.few[level][p]);
+        keep_[level][p] = wiener_gain(shared_.signal[level][p], shared_.noise[level][p],
+                                      shared_.inverse_dof[level][p]);
       }
     });
   }
@@ -210,7 +210,8 @@ class Sharer {
   // A few layers at a time: planes of all of them would take more memory than all else.
   void take_layers() {
     if (!in_place_) {
-      shared_.radiance.reserve(estimate_.samples.size() * estimate_.layers);  // strays follow
+      shared_.radiance.reserve(estimate_.samples.size() *
+                               estimate_.layers);  // off-grid points follow
       shared_.radiance.resize(points_ * estimate_.layers);
     }
     for (std::size_t first = 0; first < estimate_.layers; first += layers_at_once) {

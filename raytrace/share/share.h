@@ -162,13 +162,14 @@ struct Shared {
   std::vector<glm::vec3> radiance;  // as Estimate::sum, the shared means
   // By level and point, of its luminance: mean squares of signal (found by chance: it may be
   // negative) and noise, and 1 / N.
-  std::array<std::vector<float>, share_levels> signal, noise, few;
+  std::array<std::vector<float>, share_levels> signal, noise, inverse_dof;
   std::vector<float> rest;  // noise of it
-  // Of strays, the signal that noise may hide: less cannot be told from none. Empty without strays.
+  // Of off-grid points, the signal that noise may hide: less cannot be told from none. Empty
+  // without off-grid points.
   std::vector<float> hidden;
   std::vector<float> squared_error;  // stated
   // Of points that stand alone, noise that is likely beyond it, or less than none (alone.h).
-  std::vector<float> likely_more;
+  std::vector<float> variance_prior;
 
   // What the squared error would be with `factor` times the samples here and around.
   [[nodiscard]] double squared_error_with(std::size_t point, double factor) const;
@@ -186,8 +187,8 @@ enum class Keep { AsTold, All };
 // The points of the grid, which come first in the estimate.
 [[nodiscard]] Shared share(const Neighbours& neighbours, const Estimate& estimate,
                            Keep keep = Keep::AsTold);
-// The same where the estimate's sums are: it is left without, and those of strays stay in
-// Shared::radiance until add_strays() has them.
+// The same where the estimate's sums are: it is left without, and those of off-grid points stay in
+// Shared::radiance until add_off_grid_points() has them.
 [[nodiscard]] Shared share_in_place(const Neighbours& neighbours, Estimate& estimate,
                                     Keep keep = Keep::AsTold);
 
@@ -195,8 +196,9 @@ enum class Keep { AsTold, All };
 // is found by chance looks like signal half of the time: only what is well above it counts, the
 // more so the fewer details tell s, which is off by sqrt(2 / N) q by chance. Both shares of q are
 // what cost least on the payload bay (docs/log/renderer.md).
-[[nodiscard]] inline float kept_share(float s, float q, float few) {
-  const float sure = s - (tuning::doubt + tuning::doubt_of_chance * std::sqrt(2.0F * few)) * q;
+[[nodiscard]] inline float wiener_gain(float s, float q, float inverse_dof) {
+  const float sure =
+      s - (tuning::noise_margin + tuning::chance_margin * std::sqrt(2.0F * inverse_dof)) * q;
   return sure > 0.0F ? sure / (sure + q) : 0.0F;
 }
 

@@ -78,7 +78,7 @@ void find_signals(std::size_t level, const Neighbours::Planes& squares,
   const std::size_t points = expected.size();
   float* const signal = shared.signal[level].data();
   float* const noise = shared.noise[level].data();
-  float* const few = shared.few[level].data();
+  float* const inverse_dof = shared.inverse_dof[level].data();
   const float *energy = squares[Energy].data(), *of_noise = squares[NoiseSquare].data(),
               *weight = squares[Weight].data(), *e = expected.data();
   const Spread all =
@@ -87,18 +87,18 @@ void find_signals(std::size_t level, const Neighbours::Planes& squares,
           const float scale = weight[p] > 0.0F ? 1.0F / weight[p] : 0.0F;
           signal[p] = (energy[p] - of_noise[p]) * scale;
           noise[p] = of_noise[p] * scale;
-          few[p] = 0.0F;
+          inverse_dof[p] = 0.0F;
         }
         for (std::size_t k = 0; k < tuning::scatter_fields; ++k) {
           const float* const scatter = squares[Scatter + k].data();
           for (std::size_t p = begin; p < end; ++p) {
             const float off = noise[p] > 0.0F ? scatter[p] / of_noise[p] : 0.0F;
-            few[p] += off * off / float(tuning::scatter_fields);
+            inverse_dof[p] += off * off / float(tuning::scatter_fields);
           }
         }
         Spread part;
         for (std::size_t p = begin; p < end; ++p) {
-          if (e[p] > 0.0F) part.add(signal[p], noise[p], few[p]);
+          if (e[p] > 0.0F) part.add(signal[p], noise[p], inverse_dof[p]);
         }
         return part;
       });
@@ -111,7 +111,7 @@ void find_signals(std::size_t level, const Neighbours::Planes& squares,
       signal[p] = s;
       noise[p] = q;
       // The mean of N normal squares has the relative variance 2 / N.
-      few[p] = std::min(1.0F, 0.5F * few[p] * over * over);
+      inverse_dof[p] = std::min(1.0F, 0.5F * inverse_dof[p] * over * over);
     }
   });
 }

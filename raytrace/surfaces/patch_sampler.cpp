@@ -61,7 +61,7 @@ void PatchSampler::gather(const SurfaceSpot& from, const base::SobolOwen4& seque
                           std::size_t entry) {
   const bool is_even = incoming_.bright().empty();
   const std::size_t aimed = is_even ? 0 : rays / cosine_rays_each;
-  RayShare share;
+  MisContext share;
   share.found_rays = static_cast<double>(rays);
   share.aimed_rays = static_cast<double>(aimed);
   share.from = {from.at + from.lift, from.normal};
@@ -94,7 +94,7 @@ void PatchSampler::gather(const SurfaceSpot& from, const base::SobolOwen4& seque
 
 // Of what such a ray meets only what the patch itself sends counts, straight or through glass that
 // does not bend it.
-void PatchSampler::aim(const SurfaceSpot& from, const std::array<float, 4>& u, const RayShare& all,
+void PatchSampler::aim(const SurfaceSpot& from, const std::array<float, 4>& u, const MisContext& all,
                        std::size_t entry) {
   const IncomingLight::Aimed aimed =
       incoming_.aim({from.at + from.lift, from.normal}, double(u[0]), double(u[1]), double(u[2]),
@@ -104,7 +104,7 @@ void PatchSampler::aim(const SurfaceSpot& from, const std::array<float, 4>& u, c
   const auto visit = [&](const scenes::Hit& hit, const Vec3& direction, int step) {
     ++rays_;
     if (hit.missed()) return false;
-    if (incoming_.kept_part(hit, direction, aimed.share) > 0.0) {
+    if (incoming_.residual_weight(hit, direction, aimed.share) > 0.0) {
       table_.add(hit, Rgb(base::pi * weight), gathered(entry));
       return false;
     }
@@ -118,7 +118,7 @@ void PatchSampler::aim(const SurfaceSpot& from, const std::array<float, 4>& u, c
 
 // Reads the surface, and those that mirrors and glass lead on to, as the form factors have it
 // (radiosity/factors/row_caster.cpp).
-void PatchSampler::follow(const scenes::Hit& first, const Vec3& along, const RayShare& share,
+void PatchSampler::follow(const scenes::Hit& first, const Vec3& along, const MisContext& share,
                           std::size_t entry) {
   double weight = 1.0 / share.found_rays;
   const auto visit = [&](const scenes::Hit& hit, const Vec3& way, int step) {
@@ -132,7 +132,7 @@ void PatchSampler::follow(const scenes::Hit& first, const Vec3& along, const Ray
     const bool front = hit.front || scene_.scene.materials[m].two_sided;
     if (front) {
       const bool aimed_come = scenes::goes_straight_on(along, way);  // to what is met, too
-      const double kept = aimed_come ? incoming_.kept_part(hit, way, share) : 1.0;
+      const double kept = aimed_come ? incoming_.residual_weight(hit, way, share) : 1.0;
       table_.add(hit, Rgb(base::pi * weight * kept), gathered(entry));
     }
     const bool glass = base::max_component(scene_.scene.materials[m].transmit) > 0.0;

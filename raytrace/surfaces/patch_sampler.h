@@ -65,9 +65,9 @@ class PatchSampler {
   void take(const Arriving& light, const Rgb& share);
   void add_shadow_ray(const SurfaceSpot& from, const scenes::LightSample& sample, const Rgb& lx,
                       std::size_t entry, std::size_t group, bool twice);
-  void aim(const SurfaceSpot& from, const std::array<float, 4>& u, const RayShare& all,
+  void aim(const SurfaceSpot& from, const std::array<float, 4>& u, const MisContext& all,
            std::size_t entry);
-  void follow(const scenes::Hit& first, const Vec3& along, const RayShare& share,
+  void follow(const scenes::Hit& first, const Vec3& along, const MisContext& share,
               std::size_t entry);
   void escape(const Vec3& way, double weight, std::size_t entry);
 

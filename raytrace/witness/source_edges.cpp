@@ -12,11 +12,11 @@ namespace earthshine::raytrace {
 namespace {
 
 // A pixel's mean and the standard deviation of its samples.
-struct Look {
+struct PixelStatistics {
   double mean = 0.0, deviation = 0.0;
 };
 
-Look look_at(const PixelSums& sums, std::size_t pixel) {
+PixelStatistics statistics_of(const PixelSums& sums, std::size_t pixel) {
   const double n = sums.samples[pixel];
   if (n == 0.0) return {};
   const double mean = sums.luminance[pixel] / n, square = sums.luminance2[pixel] / n;
@@ -46,10 +46,10 @@ std::vector<std::uint32_t> wanted_for_source_edges(const PixelSums& sums, std::u
         source = source || sums.source[q].luminance > 0.0;
         // A pixel's own samples would stop where they happen to agree, and its mean be biased.
         if (qx == x && qy == y) continue;
-        const Look look = look_at(sums, q);
-        low = std::min(low, look.mean);
-        high = std::max(high, look.mean);
-        scatter = std::max(scatter, look.deviation);
+        const PixelStatistics pixel = statistics_of(sums, q);
+        low = std::min(low, pixel.mean);
+        high = std::max(high, pixel.mean);
+        scatter = std::max(scatter, pixel.deviation);
       }
     }
     return source && std::max(high - low, scatter) > tuning::least_contrast * high;

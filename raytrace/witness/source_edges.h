@@ -16,9 +16,9 @@ namespace earthshine::raytrace {
 [[nodiscard]] std::uint32_t samples_for_edges(double error);
 
 // Samples that each pixel of the sums should have so that pixels at the edges of sources have as
-// many as that, before their errors are stated. A pixel is at an edge if the eight pixels around it, or
-// the samples of one of them, differ by more than a third of the brightest and some of the nine
-// show a source. All get fewer, but at least 64, where together they would take more than
+// many as that, before their errors are stated. A pixel is at an edge if the eight pixels around
+// it, or the samples of one of them, differ by more than a third of the brightest and some of the
+// nine show a source. All get fewer, but at least 64, where together they would take more than
 // most_added.
 [[nodiscard]] std::vector<std::uint32_t> wanted_for_source_edges(const PixelSums& sums,
                                                                  std::uint32_t samples,

@@ -17,6 +17,10 @@ int power_of_two_at_least(double value, int low, int high) {
 
 }  // namespace
 
+int camera_samples_for(double error) {
+  return power_of_two_at_least(64.0 * std::pow(default_error / error, 4.0 / 3.0), 4, 1 << 10);
+}
+
 QualityKnobs resolve_quality(const Scene& scene) { return resolve_quality(scene, scene.quality); }
 
 QualityKnobs resolve_quality(const Scene& scene, const Quality& given) {
@@ -25,12 +29,11 @@ QualityKnobs resolve_quality(const Scene& scene, const Quality& given) {
   QualityKnobs knobs;
   knobs.form_factor_rays = given.form_factor_rays.value_or(
       power_of_two_at_least(1024.0 * std::pow(ratio, 1.0 / 0.6), 64, 1 << 18));
-  knobs.share_gather = given.share_gather.value_or(true);
-  const double rays = 32.0 * (knobs.share_gather ? 1 : rays_alone_per_shared) * ratio * ratio;
   knobs.gather_rays =
-      given.gather_rays.value_or(power_of_two_at_least(rays, knobs.share_gather ? 8 : 16, 1 << 16));
-  knobs.smooth_share = given.smooth_share.value_or(std::clamp(0.25 / std::sqrt(ratio), 0.05, 0.5));
-  knobs.picture_noise = given.picture_noise.value_or(std::min(1.0, 1.5 * reference_error / ratio));
+      given.gather_rays.value_or(power_of_two_at_least(32.0 * ratio * ratio, 8, 1 << 16));
+  knobs.camera_samples =
+      given.camera_samples.value_or(camera_samples_for(given.error.value_or(reference_error)));
+  knobs.denoise = given.denoise.value_or(true);
   if (!scene.vertices.empty()) {
     const double diagonal_m = box_around(scene.vertices).diagonal();
     knobs.patch_edge_m = diagonal_m / 48.0 / std::clamp(ratio, 0.25, 4.0);

@@ -6,8 +6,8 @@
 
 namespace earthshine::scenes {
 
-// Gather rays of a pixel that shares none, for the noise of one that does.
-inline constexpr int rays_alone_per_shared = 8;
+// Paths per pixel over gather rays per pixel, for about the same noise.
+inline constexpr int paths_per_gather_ray = 8;
 
 // Relative; of a scene that names none.
 inline constexpr double default_error = 0.02;
@@ -19,19 +19,17 @@ struct QualityKnobs {
   int max_patches = 0;             // 0: as many as an even cut at patch_edge_m would have
   double refine_error = 0.0;       // root mean square, relative, at which refinement ends
   int form_factor_rays = 1024;     // per patch, a power of two
-  int gather_rays = 256;           // per pixel
-  bool share_gather = false;       // between a pixel's camera samples and neighbouring pixels
-  double smooth_share = 0.0;       // of the mean gather ray, how far neighbours share
-  double picture_noise = 0.01;     // wanted of the camera samples, relative to the mean luminance
+  int gather_rays = 32;            // per pixel
+  int camera_samples = 64;         // per pixel
+  bool denoise = true;             // gather points with their neighbours
   double solver_tolerance = 1e-8;  // relative residual
 };
 
 // A knob that the scene sets wins. Otherwise a wanted relative error e sets it by the measured laws
-//   gather noise   ~ gather_rays^-1/2     32 rays for 0.02 if shared, else 256
-//   sharing        ~ smooth_share^2       a quarter of the mean ray for 0.02
-//   camera samples to a noise of 1.5 e    their spread overstates what low-discrepancy samples
-//   leave radiosity      ~ form_factor_rays^-0.6  1024 rays for 0.02 patch size     ~ patch_edge
-//   (scene diagonal)/48 for 0.02
+//   gather noise   ~ gather_rays^-1/2        32 rays for 0.02
+//   edges          ~ camera_samples^-3/4     64 samples for 0.02
+//   radiosity      ~ form_factor_rays^-0.6   1024 rays for 0.02
+//   patch size     ~ patch_edge              (scene diagonal) / 48 for 0.02
 // rounded up to powers of two for rays; without a wanted error, e = 0.02.
 //
 // Patches are refined unless the scene sets patch_edge alone or refine = false. What is then left
@@ -40,6 +38,8 @@ struct QualityKnobs {
 // have; max_patches without error is spent to the last patch. Where patch_edge is set too, no patch
 // is longer.
 [[nodiscard]] QualityKnobs resolve_quality(const Scene& scene);
+// By the law above: for a wanted error.
+[[nodiscard]] int camera_samples_for(double error);
 // The same with other wishes than the scene's.
 [[nodiscard]] QualityKnobs resolve_quality(const Scene& scene, const Quality& given);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/effects/quality.h"
 #include "scenes/read/scene_parts.h"
 
 namespace earthshine::scenes {
@@ -25,8 +26,9 @@ constexpr Range filter_widths{0.0, 16.0, true};  // px
 // The view of a camera closer to its target than this is made of rounding.
 constexpr double least_relative_view = 1e-9;
 constexpr std::string_view quality_keys[] = {
-    "error",       "patch_edge",       "max_patches", "refine", "form_factor_rays",
-    "gather_rays", "solver_tolerance", "gather",      "smooth", "picture_noise"};
+    "error",       "patch_edge",     "max_patches", "refine",           "form_factor_rays",
+    "gather_rays", "camera_samples", "denoise",     "solver_tolerance", "gather",
+    "smooth",      "picture_noise"};
 constexpr int most_pixels = 16384;           // per side
 constexpr std::size_t most_settings = 1000;  // of a CCTV camera or the monitor; a dozen exist
 
@@ -167,24 +169,34 @@ SettingTable read_settings(const TomlNode& node, const std::string& title, bool 
   return settings;
 }
 
-void read_gather(Quality& quality, const TableReader& table) {
+// Keys of former versions, read as the key of today with the nearest meaning.
+void read_former_keys(Quality& quality, const TableReader& table,
+                      std::vector<std::string>& warnings) {
+  const auto warn = [&](const char* key, const std::string& as) {
+    warnings.push_back(fmt::format("{}: quality.{} is a key of former versions, read as {}",
+                                   base::to_string(table.where(key)), key, as));
+  };
+  const auto no_denoising = [&](const char* key, bool off) {
+    if (off && !quality.denoise) quality.denoise = false;
+    warn(key, off ? "denoise = false" : "denoise = true");
+  };
   const auto gather = table.text("gather");
   if (gather && *gather != "shared" && *gather != "per-sample") {
     table.fail("gather", fmt::format("is \"{}\"", *gather),
                "allowed is \"shared\" or \"per-sample\"");
   }
-  if (gather) quality.share_gather = *gather == "shared";
-  quality.smooth_share = table.number("smooth", {0.0, 1.0, false});
-  quality.picture_noise = table.number("picture_noise", {0.0, 1.0, true});
-  if (quality.share_gather.value_or(true)) return;
-  for (const char* key : {"smooth", "picture_noise"}) {
-    if (table.find(key) == nullptr) continue;
-    table.fail(key, "belongs to gather = \"shared\"", "gather is \"per-sample\"",
-               "Leave out one of the two");
-  }
+  if (gather) no_denoising("gather", *gather == "per-sample");
+  const auto smooth = table.number("smooth", {0.0, 1.0, false});
+  if (smooth) no_denoising("smooth", *smooth == 0.0);
+  const auto noise = table.number("picture_noise", {0.0, 1.0, true});
+  if (!noise) return;
+  // It was to be 1.5 times the wanted error.
+  const int samples = camera_samples_for(*noise / 1.5);
+  if (!quality.camera_samples) quality.camera_samples = samples;
+  warn("picture_noise", fmt::format("camera_samples = {}", samples));
 }
 
-Quality read_quality(const TomlNode& node) {
+Quality read_quality(const TomlNode& node, std::vector<std::string>& warnings) {
   const TableReader table(node, "[quality]", quality_keys);
   Quality quality;
   quality.error = table.number("error", {0.0, 1.0, true});
@@ -199,7 +211,9 @@ Quality read_quality(const TomlNode& node) {
   quality.form_factor_rays = table.whole("form_factor_rays", 1, 1 << 24);
   quality.gather_rays = table.whole("gather_rays", 1, 1 << 20);
   quality.solver_tolerance = table.number("solver_tolerance", {0.0, 0.1, true});
-  read_gather(quality, table);
+  quality.camera_samples = table.whole("camera_samples", 1, 1 << 20);
+  quality.denoise = table.flag("denoise");
+  read_former_keys(quality, table, warnings);
   return quality;
 }
 

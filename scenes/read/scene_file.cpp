@@ -157,7 +157,8 @@ Scene scene_of(TomlNode tree, const std::filesystem::path& path,
   read_named(root, "range_sensor", [&](const TomlNode& node) {
     return scene.range_sensors.emplace_back(read_settings(node, "[[range_sensor]]", true)).name;
   });
-  if (const TomlNode* node = plain_table(root, "quality")) scene.quality = read_quality(*node);
+  if (const TomlNode* node = plain_table(root, "quality"))
+    scene.quality = read_quality(*node, scene.warnings);
 
   // Objects last: their meshes take the longest to read, and a slip elsewhere shows at once.
   MeshShelf shelf(path.parent_path(), scene.materials.size());

@@ -67,7 +67,7 @@ void read_sky(Scene& scene, const SkyTables& tables);
 [[nodiscard]] Camera read_camera(const TomlNode& node, double unit_m);
 [[nodiscard]] SettingTable read_settings(const TomlNode& node, const std::string& title,
                                          bool named);
-[[nodiscard]] Quality read_quality(const TomlNode& node);
+[[nodiscard]] Quality read_quality(const TomlNode& node, std::vector<std::string>& warnings);
 
 // A mesh and what the scene has made of its materials.
 struct ShelvedMesh {

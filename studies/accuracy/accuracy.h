@@ -106,7 +106,7 @@ struct Batch {
 
 // The two pictures of the straight truth come from the finest step of that way, other random
 // numbers each.
-[[nodiscard]] AccuracyStep straight_step(const scenes::Scene& scene, double error);
+[[nodiscard]] AccuracyStep straight_step(double error);
 [[nodiscard]] std::uint64_t reference_seed(std::uint64_t seed, int side, int index);
 
 }  // namespace earthshine::studies

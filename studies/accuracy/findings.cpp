@@ -107,7 +107,7 @@ Spent spent_on(const MeasuredStep& point) {
   if (step.series == series::patches) return {double(point.cost.patches), "patches"};
   if (step.series == series::form_factor_rays) return {step.setting, "form-factor rays a patch"};
   if (step.series == series::gather_rays) return {step.setting, "gather rays a pixel"};
-  if (step.series == series::picture_noise) {
+  if (step.series == series::camera_samples) {
     return {point.cost.camera_samples, "camera samples a pixel"};
   }
   if (step.series == series::lights) return {step.setting, "lights"};

@@ -18,7 +18,7 @@ constexpr double error_steps[] = {20.0, 10.0, 5.0, 3.0, 2.0, 1.4, 1.0, 0.7};
 constexpr double edge_steps[] = {8.0, 4.0, 2.0, 1.0, 0.5};  // of the edge for an error of 0.02
 constexpr int form_factor_steps[] = {16, 64, 256, 1024, 4096};
 constexpr int gather_steps[] = {8, 16, 32, 64, 128};  // it casts 8 at least
-constexpr double noise_steps[] = {0.5, 0.15, 0.05, 0.015};
+constexpr int camera_steps[] = {4, 16, 64, 256};
 
 // 0.05 and not 0.050000000000000003.
 double tidy(double value) { return std::stod(fmt::format("{:.3g}", value)); }
@@ -26,8 +26,7 @@ double tidy(double value) { return std::stod(fmt::format("{:.3g}", value)); }
 class Ladder {
  public:
   explicit Ladder(const scenes::Scene& scene) {
-    kept_.share_gather = scene.quality.share_gather;
-    kept_.smooth_share = scene.quality.smooth_share;
+    kept_.denoise = scene.quality.denoise;
     kept_.solver_tolerance = scene.quality.solver_tolerance;
     usual_edge_m_ = scenes::resolve_quality(scene, {}).patch_edge_m;
   }
@@ -99,9 +98,9 @@ void add_radiosity(Ladder& ladder, const scenes::Effects& effects, const LadderO
       ladder.add(method, series::gather_rays, how, rays, rays + 50.0).quality.gather_rays = rays;
     }
   }
-  for (const double noise : noise_steps) {
-    ladder.add(method, series::picture_noise, how, noise, 1.0 + 1e-3 / (noise * noise))
-        .quality.picture_noise = noise;
+  for (const int samples : camera_steps) {
+    ladder.add(method, series::camera_samples, how, samples, samples + 10.0)
+        .quality.camera_samples = samples;
   }
 }
 
@@ -126,7 +125,7 @@ std::vector<std::string> AccuracyStep::options() const {
   set(series::patches, quality.patch_edge_m);
   set(series::form_factor_rays, quality.form_factor_rays);
   set(series::gather_rays, quality.gather_rays);
-  set(series::picture_noise, quality.picture_noise);
+  set(series::camera_samples, quality.camera_samples);
   return words;
 }
 
@@ -164,7 +163,7 @@ std::vector<std::string> replaced_keys(const scenes::Quality& quality) {
   look("refine", quality.refine.has_value());
   look("form_factor_rays", quality.form_factor_rays.has_value());
   look("gather_rays", quality.gather_rays.has_value());
-  look("picture_noise", quality.picture_noise.has_value());
+  look("camera_samples", quality.camera_samples.has_value());
   return keys;
 }
 

@@ -17,7 +17,7 @@ inline constexpr const char* error = "error";         // all together, by --erro
 inline constexpr const char* patches = "patch_edge";  // even patches, m
 inline constexpr const char* form_factor_rays = "form_factor_rays";
 inline constexpr const char* gather_rays = "gather_rays";
-inline constexpr const char* picture_noise = "picture_noise";
+inline constexpr const char* camera_samples = "camera_samples";
 inline constexpr const char* lights = "distributed_lights";
 inline constexpr const char* samples = "samples";
 }  // namespace series
@@ -49,7 +49,7 @@ struct LadderOptions {
 // In the order in which they are run: the first of every series, the second ... `effects`: of the
 // scene with all light. Series that have nothing to vary are left out: patches and form factors
 // where nothing is solved for, gather rays where there are none, distributed lights where no source
-// is wide. What else the scene says of quality stays: gather, smooth, solver_tolerance.
+// is wide. What else the scene says of quality stays: denoise, solver_tolerance.
 [[nodiscard]] std::vector<AccuracyStep> accuracy_ladder(const scenes::Scene& scene,
                                                         const scenes::Effects& effects,
                                                         const LadderOptions& options);

@@ -76,13 +76,12 @@ bool leaves_paths_out(const scenes::Effects& effects) {
   return effects.mirror || effects.refraction;
 }
 
-AccuracyStep straight_step(const scenes::Scene& scene, double error) {
+AccuracyStep straight_step(double error) {
   AccuracyStep step;
   step.method = "direct";
   step.series = series::error;
   step.setting = error;
   step.indirect = raytrace::Indirect::None;
-  step.quality.share_gather = scene.quality.share_gather;
   step.quality.error = error;
   return step;
 }

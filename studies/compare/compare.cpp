@@ -54,16 +54,14 @@ class Comparing {
     return listen_ ? listen_(stage) : raytrace::Progress{};
   }
 
-  [[nodiscard]] bool steered() const { return options_.error > 0.0 && options_.shared.on; }
-
   [[nodiscard]] raytrace::RenderOptions render_options(const Method& method) const {
     raytrace::RenderOptions render;
     render.columns = options_.columns;
     render.rows = options_.rows;
     render.gather_rays = options_.gather_rays;
-    render.shared = options_.shared;
+    render.camera_samples = options_.camera_samples;
     render.indirect = method.indirect;
-    if (steered()) render.error = options_.error;
+    render.error = options_.error;
     if (method.distributed_lights > 0) render.distributed_lights = method.distributed_lights;
     render.distributed_over = method.distributed_over;
     render.seed = options_.seed;
@@ -95,12 +93,10 @@ class Comparing {
       const double solved = base::cpu_seconds();
       result.solve_cpu_seconds += solved - begin;
       raytrace::RenderOptions render = render_options(method);
-      if (steered()) {
-        render.error = 0.5 * options_.error;
-      } else {
-        render.shared.on = false;
-        render.gather_rays = options_.rays_of_a_reference();
-      }
+      render.error *= 0.5;
+      render.gather_rays *= options_.reference_factor;
+      render.camera_samples *= options_.reference_factor;
+      render.denoise = options_.error > 0.0;
       render.seed = options_.seed + k;
       if (k == 1) render.aovs = {"object"};
       raytrace::Frame frame = draw(solution, render, stage);

@@ -4,9 +4,9 @@
 //
 // All are measured against a reference that shares nothing with them: the mean of two pictures,
 // each of a radiosity solution of its own (patches of half the edge, other random numbers), drawn
-// to half the wanted error or, where none is wanted, without sharing and with `reference_factor`
-// times the rays. The error is that of all studies (picture_error.h); the variances of the pair are
-// not known, as no picture states the noise of its solution.
+// to half the wanted error or, where none is wanted, without denoising and with `reference_factor`
+// times the samples. The error is that of all studies (picture_error.h); the variances of the pair
+// are not known, as no picture states the noise of its solution.
 #pragma once
 
 #include <cstdint>
@@ -23,21 +23,16 @@ namespace earthshine::studies {
 struct CompareOptions {
   int columns = 512;
   int rows = 512;
-  int gather_rays = 256;  // per pixel; without gathering the camera samples that go with them
-  raytrace::SharedGather shared = {};  // of all pictures but the references
-  // Of each picture, as RenderOptions::error; the references are drawn to half of it. 0:
-  // by the settings alone.
+  int gather_rays = 32, camera_samples = 16;  // per pixel
+  // Of each picture, as RenderOptions::error; the references are drawn to half of it. 0: fixed
+  // numbers of samples.
   double error = 0.0;
-  int reference_rays = 0;  // of each reference; 0: gather_rays * reference_factor
-  int reference_factor = 4;
+  int reference_factor = 4;  // samples of each reference over those of the other pictures
   std::vector<int> distributed_lights = {4, 16, 64, 256};
   std::string
       distributed_over;  // an [[area]]: the Earth's lights over it too; empty: its disc only
   radiosity::SolveOptions solver;
   std::uint64_t seed = 1;
-  [[nodiscard]] int rays_of_a_reference() const {
-    return reference_rays > 0 ? reference_rays : gather_rays * reference_factor;
-  }
 };
 
 // An approximation would have misled about a target when its luminance is off by more than this

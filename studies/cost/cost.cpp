@@ -9,7 +9,7 @@
 #include "base/ranks/ranks.h"
 #include "radiosity/near_lamps.h"
 #include "radiosity/refine.h"
-#include "raytrace/passes/rounds.h"
+#include "raytrace/adaptive/allocator.h"
 #include "raytrace/paths/path_tracer.h"
 #include "studies/cost/cost_laws.h"
 
@@ -85,11 +85,6 @@ class PictureDrawer {
     const double scale = std::min(1.0, std::sqrt(pixels / wanted));
     options.columns = std::max(1, static_cast<int>(std::lround(scale * options.columns)));
     options.rows = std::max(1, static_cast<int>(std::lround(scale * options.rows)));
-    // Samples and rays gathered again go to edges, whose share of the pixels grows as the picture
-    // shrinks, as 1 / noise^2: with the noise so much larger a pixel costs what it does in the
-    // whole.
-    const double coarser = 1.0 / std::sqrt(scale);
-    options.shared.noise *= coarser;
     options.crop = {};
     if (options.indirect == raytrace::Indirect::Paths) {
       return raytrace::trace_paths(call_, camera,
@@ -122,7 +117,7 @@ raytrace::RenderReport expect_steered(const PictureDrawer& drawer, const scenes:
                                       raytrace::RenderOptions options, base::Image& image) {
   const Stopwatch watch;
   options.stop = [&watch] { return watch.cpu_seconds() > begun_cpu_s; };
-  options.first_look_pixels =
+  options.initial_sampling_pixels =
       static_cast<std::size_t>(options.columns) * static_cast<std::size_t>(options.rows);
   raytrace::Frame frame = timed(watch, drawer.draw(camera, options, begun_pixels));
   const double growth = samples_growth(frame.report, options.error);
@@ -174,7 +169,7 @@ double solve_seconds(const radiosity::SolveReport& report) {
 double samples_growth(const raytrace::RenderReport& report, double wanted) {
   if (report.growth > 0.0) return report.growth;
   const double ratio = report.relative_noise / wanted;
-  return ratio > 1.0 ? std::pow(ratio / raytrace::sure_share(wanted), power_of_a_cut_look) : 1.0;
+  return ratio > 1.0 ? std::pow(ratio / raytrace::stop_fraction(wanted), power_of_a_cut_look) : 1.0;
 }
 
 Pilot expect_costs(const PilotCall& call, const std::vector<const scenes::Camera*>& cameras,

@@ -59,8 +59,7 @@ double record_bytes(const MemoryCase& m) {
   const double entries = layers + (m.splits_parts ? 3.0 : 0.0);
   const PixelRecordBytes& b = pixel_record_bytes;
   const double per_layer = b.gather_per_layer + (m.in_rounds ? b.cast_per_layer : 0.0);
-  return b.sums + b.sums_per_entry * entries +
-         (m.shares_gather ? b.gather_point + per_layer * layers : 0.0);
+  return b.sums + b.sums_per_entry * entries + b.gather_point + per_layer * layers;
 }
 
 // Bytes per patch of a linear solve, whose product packs its columns in fours.
@@ -127,8 +126,7 @@ MemoryNeed memory_needed(const MemoryCase& m) {
   }
   MemoryNeed drawing = standing;
   if (m.columns > 0) {
-    const double texels =
-        (m.refined ? 1.0 + double(raytrace::knots_per_cell) : 1.0) * (m.specular ? 2.0 : 1.0);
+    const double texels = (m.refined ? 1.0 + double(raytrace::knots_per_cell) : 1.0);
     drawing.parts.push_back(
         {"solution", patches * columns * solution_bytes + patches * layers * texels * texel_bytes});
   }
@@ -188,13 +186,11 @@ void add_picture(MemoryCase& m, const scenes::LightGroups& groups, const scenes:
     // Of the others none has more than a colour's.
     m.channels += aov.starts_with("crypto_") ? raytrace::cryptomatte_channel_count : 3;
   }
-  m.specular = effects.mirror || effects.refraction || effects.phong || options.shared.on;
   const auto is_part = [](const std::string& aov) {
     return aov == "direct" || aov == "indirect" || aov == "specular";
   };
   m.splits_parts = std::any_of(options.aovs.begin(), options.aovs.end(), is_part);
-  m.shares_gather = options.shared.on;
-  m.in_rounds = options.error > 0.0 || (options.time_limit_s > 0.0 && options.fills_time);
+  m.in_rounds = options.has_rounds();
   if (options.indirect != raytrace::Indirect::Radiosity || !effects.solution) {
     m.solves = false;
     m.columns = 0;

@@ -23,7 +23,7 @@ namespace earthshine::studies {
 struct PixelRecordBytes {
   double sums = 64.0;              // samples, moments of the luminance, wanted samples
   double sums_per_entry = 12.0;    // radiance of an image layer or part
-  double gather_point = 700.0;     // with SharedGather and a stray now and then: place, halves,
+  double gather_point = 700.0;     // with a stray now and then: place, halves,
                                    // its details, fields of noise meanwhile
   double gather_per_layer = 30.0;  // of diffuse light and of lobes, as shared
   double cast_per_layer = 55.0;    // of three kinds, as cast, where they are cast round by round
@@ -42,17 +42,15 @@ struct MemoryCase {
   std::size_t sky_parts = 0;   // whose light form-factor rays bring
   bool solves = false;         // the matrix is cast; false with columns: the solution is read
   int threads = 1;
-  int ranks = 1;               // that divide the entries of the matrix among them
-  bool has_mpi = false;        // earthshine-mpi, by mpirun
-  bool first_rank = true;      // which iterates for all (radiosity/linear_solve.h)
-  bool states_error = false;   // of the solution, over all surfaces (raytrace/surfaces)
-  std::size_t pixels = 0;      // 0: no picture
-  std::size_t channels = 0;    // of the picture, 4 bytes each
-  std::size_t layers = 0;      // that read the solution: 1, or the light groups
-  bool splits_parts = false;   // layers direct, indirect, specular
-  bool shares_gather = false;  // RenderOptions::shared
-  bool in_rounds = false;      // RenderOptions::error or the whole of a time limit
-  bool specular = false;       // a second table of the solution for highlights, mirrors, glass
+  int ranks = 1;              // that divide the entries of the matrix among them
+  bool has_mpi = false;       // earthshine-mpi, by mpirun
+  bool first_rank = true;     // which iterates for all (radiosity/linear_solve.h)
+  bool states_error = false;  // of the solution, over all surfaces (raytrace/surfaces)
+  std::size_t pixels = 0;     // 0: no picture
+  std::size_t channels = 0;   // of the picture, 4 bytes each
+  std::size_t layers = 0;     // that read the solution: 1, or the light groups
+  bool splits_parts = false;  // layers direct, indirect, specular
+  bool in_rounds = false;     // RenderOptions::has_rounds()
 };
 
 struct MemoryPart {

@@ -36,7 +36,6 @@ bool surface(const scenes::Hit& hit, raytrace::GatherRequest& request) {
 raytrace::RenderOptions view() {
   raytrace::RenderOptions options;
   options.columns = options.rows = edge_px;
-  options.shared.on = true;
   return options;
 }
 

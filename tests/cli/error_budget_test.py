@@ -116,7 +116,7 @@ class ErrorBudget(program.Case):
 
     def test_every_way_to_draw(self):
         for options in (["--crop", "8,6,12x10"], ["--time-limit", "0.2"], ["--per-light"],
-                        ["--set", "quality.gather='per-sample'"], ["--set", "quality.refine=true"]):
+                        ["--set", "quality.denoise=false"], ["--set", "quality.refine=true"]):
             self.check(self.render(*options)["error"])
         pixel = self.json("render", "ball.toml", "-q", "--camera", "A", "--only-pixel", "16,12")
         self.check(pixel["error"])

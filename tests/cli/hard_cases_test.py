@@ -155,7 +155,7 @@ class Edges(program.Case):
         for seed in (71, 72):
             self.done(*view, "--indirect", "paths", "--set", "quality.gather_rays=1024", "--seed", seed, "-o", "paths.exr")
             paths.append(error_truth.picture(self.folder / "paths.exr")[0])
-        keys = ("smooth=0", "gather_rays=1024", "picture_noise=0.005", "patch_edge=0.45", "form_factor_rays=64", "refine=false")
+        keys = ("denoise=false", "gather_rays=1024", "camera_samples=256", "patch_edge=0.45", "form_factor_rays=64", "refine=false")
         settings = [word for key in keys for word in ("--set", f"quality.{key}")]
         stated = self.json(*view, *settings, "-o", "bay.exr")["error"]["estimate"]
         truth = error_truth.compare(error_truth.picture(self.folder / "bay.exr")[0], *paths)

@@ -90,8 +90,7 @@ aperture = 0.1
 """
         for shape, width in (("box", 1), ("gaussian", 3)):
             _, _, _, channels = self.render(
-                panel, "--aov", "crypto_object", "--set", "quality.gather=per-sample", "--set",
-                "quality.gather_rays=256", "--set", f"camera.A.filter={shape}", "--set", f"camera.A.filter_width={width}")
+                panel, "--aov", "crypto_object", "--set", "quality.camera_samples=16", "--set", f"camera.A.filter={shape}", "--set", f"camera.A.filter_width={width}")
             partial = 0
             for luminance, coverage in zip(channels["R"], channels["CryptoObject00.G"]):
                 self.assertAlmostEqual(luminance, coverage * 10 / math.pi, places=5)
@@ -147,12 +146,12 @@ aperture = 0.1
         self.assertNotIn("focus", self.render(program.BALL)[0])
 
     def test_variance_is_that_of_the_mean(self):
-        """16 and 256 rays are 4 and 16 camera samples: a quarter of the variance, over the picture.
-        """
-        def total(rays):
-            return sum(self.render(program.BALL, "--aov", "variance", "--set", "quality.gather=per-sample",
-                                   "--set", f"quality.gather_rays={rays}")[3]["variance"])
-        few, many = total(16), total(256)
+        """Four times the samples of both kinds leave a quarter of the variance, over the picture."""
+        def total(times):
+            return sum(self.render(program.BALL, "--aov", "variance", "--set", "quality.denoise=false",
+                                   "--set", f"quality.camera_samples={4 * times}",
+                                   "--set", f"quality.gather_rays={16 * times}")[3]["variance"])
+        few, many = total(1), total(4)
         self.assertGreater(many, 0)
         self.assertAlmostEqual(few / many, 4, delta=1.5)
 

@@ -18,8 +18,8 @@ from tiny_bay import SMALL_MONITOR
 
 # Pixels whose samples depend on their neighbours, on no other pixel, or on the whole picture.
 WAYS = {
-    "shared": ("--set", "quality.gather=shared"),
-    "alone": ("--set", "quality.gather=per-sample", "--indirect", "none"),
+    "denoised": ("--set", "quality.denoise=true"),
+    "alone": ("--set", "quality.denoise=false", "--indirect", "none"),
     "paths": ("--indirect", "paths"),
     "lights": ("--indirect", "distributed", "--per-light"),
     "to an error": ("--error", "0.2", "--aov", "direct,variance,object,crypto_object"),

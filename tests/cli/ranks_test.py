@@ -70,8 +70,8 @@ angular_radius_deg = 4
 """
 SCENES = {"ball.toml": BALL, "box.toml": CLOSED_BOX, "hard.toml": HARD, "free.toml": FREE, "slit.toml": SLIT, "bay.toml": PLAIN_BAY}
 RENDERS = {
-    "shared": ("--set", "quality.gather=shared", "--aov", "variance,object"),
-    "alone": ("--set", "quality.gather=per-sample", "--per-light"),
+    "denoised": ("--set", "quality.denoise=true", "--aov", "variance,object"),
+    "alone": ("--set", "quality.denoise=false", "--per-light"),
     "paths": ("--indirect", "paths"),
     "to an error": ("--error", "0.15"),
 }

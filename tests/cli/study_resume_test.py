@@ -178,7 +178,7 @@ lights = 65536
     def test_an_interrupted_run_says_so_and_goes_on(self):
         self.write("bay.toml", BAY)
         call = ("study", "orbit", "bay.toml", "--positions", "4", "-o", "o", "--wanted", "box>=0.5",
-                "--set", "quality.gather=per-sample", "--set", "quality.gather_rays=2048")
+                "--error", "0.001")
         run = self.started(*call)
         while run.poll() is None and not list(self.folder.glob("o/points/solution-*.h5")):
             time.sleep(0.01)

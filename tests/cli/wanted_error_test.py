@@ -48,13 +48,6 @@ class WantedError(program.Case):
         self.assertIsNone(error["limit"])  # the picture compensates for errors of the solution
         self.assertLessEqual(error["estimate"], 0.001)
 
-    def test_without_sharing_the_rays_that_are_set_win_and_are_named(self):
-        error = self.rendered("--error", 0.001, "--set", "quality.gather=per-sample", code=3)
-        self.assertEqual(error["limit"], "settings")
-        run = self.run_program("render", "scene.toml", "-o", "out.exr", "--size", "48x36", "--error", 0.001, "--set",
-                               "quality.gather=per-sample")
-        self.assertIn('quality.gather_rays as are set (gather = "per-sample", --indirect paths)', run.stderr)
-
     def test_of_paths_the_rays_that_are_set_win_and_are_named(self):
         few = ("--set", "quality.gather_rays=4", "--indirect", "paths")
         self.write("scene.toml", OPEN)
@@ -67,6 +60,8 @@ class WantedError(program.Case):
         self.assertLessEqual(error["seconds_to_go"],
                              report["seconds"]["render"] * ((error["estimate"] / 0.001) ** 2 - 1))
         self.assertEqual(self.rendered("--error", 1, *few)["limit"], None)
+        run = self.run_program("render", "scene.toml", "-o", "out.exr", "--size", "48x36", "--error", 0.001, *few)
+        self.assertIn("quality.gather_rays as are set (--indirect paths)", run.stderr)
         # A scene's own wanted error does not change the exit code.
         fixed = self.rendered(*few, scene=OPEN + "[quality]\nerror = 0.001\n")
         self.assertEqual(fixed["limit"], "settings")

@@ -72,12 +72,12 @@ TEST(ClusterLaw, PicturesAreThoseOfTheTriangles) {
       radiosity::solve(prepared, options, radiosity::subdivide(builder.scene, 0.25));
   ASSERT_GT(triangles.patches.count(), 6000U);
 
-  const auto drawn = [&](const radiosity::Solution& solution, bool shares) {
+  const auto drawn = [&](const radiosity::Solution& solution, bool denoise) {
     return mean_of([&](std::uint64_t seed) {
       raytrace::RenderOptions how;
       how.columns = how.rows = edge_px;
       how.gather_rays = 64;
-      how.shared.on = shares;
+      how.denoise = denoise;
       how.seed = seed;
       return raytrace::render(prepared, solution, camera, how).image;
     });
@@ -90,11 +90,11 @@ TEST(ClusterLaw, PicturesAreThoseOfTheTriangles) {
     how.seed = seed;
     return raytrace::trace_paths(prepared, camera, how).image;
   });
-  for (const bool shares : {true, false}) {
-    const Mean coarse = drawn(clusters, shares), fine = drawn(triangles, shares);
+  for (const bool denoise : {true, false}) {
+    const Mean coarse = drawn(clusters, denoise), fine = drawn(triangles, denoise);
     for (const Mean& other : {fine, truth}) {
       const double error = std::hypot(coarse.standard_error, other.standard_error);
-      EXPECT_NEAR(coarse.mean, other.mean, 4.0 * error) << "sharing " << shares;
+      EXPECT_NEAR(coarse.mean, other.mean, 4.0 * error) << "denoising " << denoise;
       EXPECT_LT(error, 0.025 * other.mean);
     }
   }

@@ -40,8 +40,7 @@ scenes::Camera looking_up() {
   return camera;
 }
 
-Frame drawn(const scenes::Scene& scene, bool per_light, bool shared = false,
-            std::uint64_t seed = 1) {
+Frame drawn(const scenes::Scene& scene, bool per_light, std::uint64_t seed = 1) {
   const tests::Prepared prepared(scene);
   radiosity::SolveOptions solve;
   solve.patch_edge_m = 0.5;
@@ -49,8 +48,8 @@ Frame drawn(const scenes::Scene& scene, bool per_light, bool shared = false,
   solve.tolerance = 1e-13;
   RenderOptions options;
   options.columns = options.rows = 24;
-  options.gather_rays = shared ? 8 : 64;
-  options.shared.on = shared;
+  options.gather_rays = 8;
+  options.denoise = false;
   options.seed = seed;
   options.per_light = per_light;
   return render(prepared, prepared.solve(solve), looking_up(), options);
@@ -151,13 +150,13 @@ scenes::Scene under(scenes::SkyParts parts) {
 // Many Suns take turns at paths. What each of them gives has the mean that it
 // has in a picture of its own: over pictures of other seeds, within four standard errors of their
 // difference.
-void expect_same_means(bool shared) {
+TEST(SkyParts, SunsThatTakeTurnsGiveWhatEachGivesAlone) {
   constexpr std::size_t count = many_suns;
   constexpr std::uint64_t seeds = 12;
   const scenes::SkyParts all = nine_suns();
   std::array<std::vector<double>, count> taking_turns;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const Frame together = drawn(under(all), true, shared, seed);
+    const Frame together = drawn(under(all), true, seed);
     for (std::size_t k = 0; k < count; ++k) {
       taking_turns[k].push_back(mean_of(together, fmt::format("light_sun-{}.G", k)));
     }
@@ -169,7 +168,7 @@ void expect_same_means(bool shared) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
       // A single group has no layer of its own.
       const double off =
-          taking_turns[k][seed - 1] - mean_of(drawn(under(one), true, shared, seed + seeds), "G");
+          taking_turns[k][seed - 1] - mean_of(drawn(under(one), true, seed + seeds), "G");
       sum += off;
       squares += off * off;
     }
@@ -200,8 +199,7 @@ TEST(SkyParts, NoiseStatedOfASunThatTakesTurnsIsWhatOtherSeedsDifferBy) {
   RenderOptions options;
   options.columns = options.rows = 24;
   options.gather_rays = 16;  // and half as many paths, four in each half
-  options.shared.on = true;
-  options.shared.smooth_share = 0.0;
+  options.denoise = false;
   options.per_light = true;
   constexpr std::size_t sun = 4;
   const std::string channel = fmt::format("light_sun-{}.G", sun);
@@ -240,9 +238,6 @@ TEST(SkyParts, NoiseStatedOfASunThatTakesTurnsIsWhatOtherSeedsDifferBy) {
   EXPECT_LT(std::abs(mean), 4.0 * error) << "stated " << stated;
   EXPECT_LT(error, 0.15 * stated);
 }
-
-TEST(SkyParts, SunsThatTakeTurnsGiveWhatEachGivesAlone) { expect_same_means(true); }
-TEST(SkyParts, SunsThatTakeTurnsGiveWhatEachGivesAlonePerSample) { expect_same_means(false); }
 
 }  // namespace
 }  // namespace earthshine::raytrace

@@ -59,8 +59,7 @@ inline scenes::Camera into_the_room() {
   return camera;
 }
 
-// Even patches, the solver to rounding, gather rays of each sample's own: the same rays whatever
-// the lights are.
+// Even patches, the solver to rounding, no denoising: the same rays whatever the lights are.
 inline raytrace::Frame same_rays(const scenes::Scene& scene, const scenes::LightGroups& groups,
                                  const scenes::Camera& camera, bool per_light) {
   scenes::Asked asked;
@@ -74,7 +73,7 @@ inline raytrace::Frame same_rays(const scenes::Scene& scene, const scenes::Light
   raytrace::RenderOptions options;
   options.columns = options.rows = 16;
   options.gather_rays = 64;
-  options.shared.on = false;
+  options.denoise = false;
   options.per_light = per_light;
   options.aovs = {"object"};
   return raytrace::render({scene, groups, effects, query},

@@ -19,7 +19,6 @@ using tests::small_room;
 raytrace::RenderOptions small_picture(double error, std::uint64_t seed = 1) {
   raytrace::RenderOptions options;
   options.columns = options.rows = 40;
-  options.shared.on = true;
   options.error = error;
   options.seed = seed;
   return options;

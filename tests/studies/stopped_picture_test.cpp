@@ -19,7 +19,6 @@ constexpr int size_px = 64;
 raytrace::RenderOptions small_picture(std::uint64_t seed) {
   raytrace::RenderOptions options;
   options.columns = options.rows = size_px;
-  options.shared.on = true;
   options.error = 0.03;
   options.seed = seed;
   return options;
@@ -104,15 +103,13 @@ TEST(StoppedPicture, AtOnceItStatesWhatItIsOffBy) {
   }
 }
 
-// Where every camera sample gathers for itself a single one would tell of no noise at all: all have
-// two, and what is stated is true as above.
-TEST(StoppedPicture, WithoutSharingItStatesItsNoiseToo) {
+// Without denoising all gather points are sampled, and the statement is as true.
+TEST(StoppedPicture, WithoutDenoisingItStatesItsNoiseToo) {
   double true_square = 0.0, stated_square = 0.0;
   constexpr int pictures = 16;
   for (std::uint64_t seed = 1; seed <= pictures; ++seed) {
     raytrace::RenderOptions options = small_picture(seed);
-    options.shared.on = false;
-    options.gather_rays = 64;
+    options.denoise = false;
     options.stop = [] { return true; };
     const Found found = draw(small_room().solution, options);
     true_square += std::pow(found.true_error.error, 2) / pictures;

@@ -84,7 +84,7 @@ class Bench:
                 black += ["--set", f"material.{material['name']}.{key}=0"]
         out = path.with_name(f"{path.stem}-black.exr")
         self.json("render", path, "-o", out, "--indirect", "none", *more, *black,
-                  *error_scenes.knobs(gather="per-sample", gather_rays=REFERENCE_PATHS))
+                  *error_scenes.knobs(camera_samples=64))
         return [light > 0 for light in error_truth.picture(out)[0]]
 
     def folder_of(self, path, text, more):

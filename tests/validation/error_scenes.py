@@ -214,11 +214,11 @@ ASKED = {
     "coarse patches": knobs(patch_edge=0.8),
     "few form-factor rays": knobs(patch_edge=0.4, form_factor_rays=32),
     "few patches": knobs(max_patches=500, form_factor_rays=128, gather_rays=16),
-    "plain gather": knobs(patch_edge=0.5, gather="per-sample", gather_rays=64),
+    "not denoised": knobs(patch_edge=0.5, denoise="false", gather_rays=64),
 }
 PICTURES = [asked for asked in ASKED if asked.startswith("picture")]
 PAIRS = (("error 0.1", "coarse patches"), ("error 0.05", "few patches"), ("error 0.1", "few form-factor rays"),
-         ("error 0.03", "plain gather"), ("error, even patches", "error, 8 gather rays"))
+         ("error 0.03", "not denoised"), ("error, even patches", "error, 8 gather rays"))
 
 SMALL = ["--size", "48x48"]
 # Shipped scenes: settings, and the picture.

@@ -96,9 +96,7 @@ TEST(LayerErrors, StatedOfASumIsWhatOtherSeedsDifferBy) {
     RenderOptions options;
     options.columns = options.rows = 32;
     options.gather_rays = 16;
-    options.shared.on = true;
-    options.shared.smooth_share = 0.0;
-    options.shared.noise = 0.1;
+    options.denoise = false;
     options.per_light = true;
     options.seed = seed;
     return render(prepared, solution, camera, options);
@@ -143,9 +141,9 @@ TEST(LayerErrors, StatedOfASumIsWhatOtherSeedsDifferBy) {
   }
 }
 
-// Of a picture that goes on to an error, whose rounds add up: the same of the two lamps together and
-// of each. Only the upper bound is a law: later samples go where the sum of all needs them, which
-// takes more off it than off its parts.
+// Of a picture that goes on to an error, whose rounds add up: the same of the two lamps together
+// and of each. Only the upper bound is a law: later samples go where the sum of all needs them,
+// which takes more off it than off its parts.
 TEST(LayerErrors, StatedOfASumHoldsRoundAfterRound) {
   tests::SceneBuilder builder;
   const std::uint32_t grey = builder.material(tests::grey(0.5));
@@ -173,8 +171,6 @@ TEST(LayerErrors, StatedOfASumHoldsRoundAfterRound) {
   const auto drawn = [&](std::uint64_t seed) {
     RenderOptions options;
     options.columns = options.rows = 32;
-    options.shared.on = true;
-    options.shared.smooth_share = 0.25;
     options.error = 0.02;
     options.per_light = true;
     options.seed = seed;
@@ -263,8 +259,6 @@ TEST(GatherStep, ACoarserFieldShowsTheSameLight) {
   const auto mean_of = [&](int step, std::uint64_t seed) {
     RenderOptions options;
     options.columns = options.rows = 32;
-    options.shared.on = true;
-    options.shared.smooth_share = 0.25;
     options.error = 0.05;
     options.gather_step = step;
     options.seed = seed;

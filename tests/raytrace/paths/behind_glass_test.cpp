@@ -73,7 +73,7 @@ struct Solved {
     solution = prepared.solve(solve);
   }
   // By the solution times a factor: whatever it is like, the residual makes up for it.
-  [[nodiscard]] Mean gathered(double factor, bool shares) const {
+  [[nodiscard]] Mean gathered(double factor, bool denoise) const {
     radiosity::Solution scaled = solution;
     for (auto* values : {&scaled.radiosity, &scaled.indirect_radiosity}) {
       for (float& value : *values) value *= static_cast<float>(factor);
@@ -81,8 +81,8 @@ struct Solved {
     return mean_of([&](std::uint64_t seed) {
       RenderOptions options;
       options.columns = options.rows = edge_px;
-      options.gather_rays = shares ? 256 : 64;
-      options.shared.on = shares;
+      options.gather_rays = 256;
+      options.denoise = denoise;
       options.seed = seed;
       return render(prepared, scaled, upward(), options).image;
     });
@@ -94,10 +94,10 @@ struct Solved {
 // However the picture is drawn, and from whatever share of the solution.
 void expect_same_picture(const scenes::Scene& scene, const Mean& wanted) {
   const Solved solved(scene);
-  for (const bool shares : {false, true}) {
+  for (const bool denoise : {false, true}) {
     for (const double factor : {1.0, 0.25}) {
-      SCOPED_TRACE(testing::Message() << "sharing " << shares << ", " << factor);
-      const Mean found = solved.gathered(factor, shares);
+      SCOPED_TRACE(testing::Message() << "denoising " << denoise << ", " << factor);
+      const Mean found = solved.gathered(factor, denoise);
       const double doubt = std::hypot(found.standard_error, wanted.standard_error);
       EXPECT_NEAR(found.mean, wanted.mean, 4.0 * doubt);
       EXPECT_LT(4.0 * doubt, 0.05 * wanted.mean);
@@ -142,7 +142,7 @@ TEST(BehindGlass, AtItsEdgeNothingLeaksIntoAClosedRoom) {
   builder.quad(bright, {a, a, a}, {a, a, b}, {b, a, b}, {b, a, a});
   builder.quad(bright, {a, b, a}, {b, b, a}, {b, b, b}, {a, b, b});
   const Solved solved(builder.scene);
-  for (const bool shares : {false, true}) EXPECT_EQ(solved.gathered(1.0, shares).mean, 0.0);
+  for (const bool denoise : {false, true}) EXPECT_EQ(solved.gathered(1.0, denoise).mean, 0.0);
 }
 
 // An upright panel that shines over a floor: panes that let all through, however slantwise it is

@@ -76,12 +76,12 @@ std::vector<Means> means_of(const Draw& draw) {
   return means;
 }
 
-std::vector<Means> pictures_of(const radiosity::Solution& solution, bool shares) {
+std::vector<Means> pictures_of(const radiosity::Solution& solution, bool denoise) {
   return means_of([&](const tests::SmallRoom& room, std::uint64_t seed) {
     RenderOptions options;
     options.columns = options.rows = edge_px;
     options.gather_rays = 64;
-    options.shared.on = shares;
+    options.denoise = denoise;
     options.per_light = true;
     options.seed = seed;
     return render(room.prepared, solution, room.camera, options).image;
@@ -105,12 +105,12 @@ const std::vector<Means>& truth() {
 void expect_truth(const radiosity::Solution& solution, const char* what) {
   ASSERT_GE(std::set<float>(objects().begin(), objects().end()).size(), 4U);
   ASSERT_GE(std::ranges::count(objects(), float(room_objects - 1)), 10);
-  for (const bool shares : {true, false}) {
-    const std::vector<Means> found = pictures_of(solution, shares);
+  for (const bool denoise : {true, false}) {
+    const std::vector<Means> found = pictures_of(solution, denoise);
     for (std::size_t k = 0; k < found.size(); ++k) {
       const Means &a = found[k], &b = truth()[k];
       EXPECT_NEAR(a.mean, b.mean, 4.0 * std::hypot(a.standard_error, b.standard_error))
-          << what << ", sharing " << shares << ", part " << k;
+          << what << ", denoising " << denoise << ", part " << k;
       EXPECT_LT(std::hypot(a.standard_error, b.standard_error), 0.03 * b.mean) << what;
     }
   }
@@ -187,7 +187,6 @@ struct Furnace {
   [[nodiscard]] Frame picture(std::uint64_t seed) const {
     RenderOptions options;
     options.columns = options.rows = 8;
-    options.shared.on = true;
     options.gather_rays = 16;
     options.seed = seed;
     return render(*prepared, solution, camera, options);

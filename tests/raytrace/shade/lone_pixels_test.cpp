@@ -39,8 +39,7 @@ void expect_no_lone_pixels(const scenes::Scene& scene, const Vec3& look_at) {
   RenderOptions options;
   options.columns = options.rows = 96;
   options.gather_rays = 32;
-  options.shared.on = true;
-  options.shared.noise = 1.0;  // four camera samples a pixel
+  options.camera_samples = 4;
   const Frame frame = render(prepared, solution, camera, options);
   for (const float v : frame.image.find("G")->values) {
     EXPECT_NEAR(double(v) * base::pi, 1.0, 0.12);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "raytrace/paths/path_tracer.h"
 #include "raytrace/render.h"
 #include "tests/support/scene_builder.h"
 
@@ -53,8 +54,7 @@ TEST_P(PixelMean, LightThatChangesWithinAPixelIsItsMean) {
   RenderOptions options;
   options.columns = options.rows = 3;
   options.gather_rays = 2048;
-  options.shared.on = true;
-  options.shared.smooth_share = 0.0;
+  options.denoise = false;
   radiosity::SolveOptions solve;
   solve.patch_edge_m = 5.0;
   const radiosity::Solution solution = prepared.solve(solve);
@@ -85,8 +85,8 @@ INSTANTIATE_TEST_SUITE_P(Gather, PixelMean,
 
 // A glossy vault of facets, 2 degrees from one to the next, that turns by 16 degrees across the
 // middle pixel of 3 x 3, under a sunlit strip that is 8 degrees wide. What is behind the pixel's
-// centre mirrors the strip, most of the pixel does not: the shared picture has the mean that
-// gathering at every camera sample has.
+// centre mirrors the strip, most of the pixel does not: the picture has the mean
+// of all paths.
 TEST(TurningLobe, IsItsMeanOverThePixel) {
   constexpr double w = 2.0, height = 10.0, step = base::radians(2.0);
   const double radius = w / 2.0 / std::sin(4.0 * step);
@@ -118,24 +118,29 @@ TEST(TurningLobe, IsItsMeanOverThePixel) {
   radiosity::SolveOptions solve;
   solve.patch_edge_m = 5.0;
   const radiosity::Solution solution = prepared.solve(solve);
-  const auto pixel = [&](bool shared) {
-    RenderOptions options;
-    options.columns = options.rows = 3;
-    options.gather_rays = 64;
-    options.shared.on = shared;
-    options.shared.smooth_share = 0.0;
+  const auto pixel = [&](bool by_paths) {
     constexpr int pictures = 256;
     double sum = 0.0, squares = 0.0;
-    for (options.seed = 1; options.seed <= pictures; ++options.seed) {
-      const Frame frame = render(prepared, solution, camera, options);
+    for (std::uint64_t seed = 1; seed <= pictures; ++seed) {
+      RenderOptions options;
+      options.columns = options.rows = 3;
+      options.gather_rays = 64;
+      options.denoise = false;
+      options.seed = seed;
+      PathOptions paths;
+      paths.columns = paths.rows = 3;
+      paths.paths_per_pixel = 64;
+      paths.seed = seed;
+      const Frame frame = by_paths ? trace_paths(prepared, camera, paths)
+                                   : render(prepared, solution, camera, options);
       const double found = double(frame.image.find("G")->values[4]);
       sum += found, squares += found * found;
     }
     const double mean = sum / pictures;
     return std::pair(mean, (squares / pictures - mean * mean) / (pictures - 1));
   };
-  const auto [right, right_variance] = pixel(false);
-  const auto [found, variance] = pixel(true);
+  const auto [right, right_variance] = pixel(true);
+  const auto [found, variance] = pixel(false);
   const double standard_error = std::sqrt(right_variance + variance);
   EXPECT_LT(standard_error, 0.05 * right);
   EXPECT_NEAR(found, right, 4.0 * standard_error);

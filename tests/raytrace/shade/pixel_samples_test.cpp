@@ -12,26 +12,6 @@
 namespace earthshine::raytrace {
 namespace {
 
-TEST(PixelSamples, SamplesGoWhereNeighboursScatter) {
-  // A pixel's own scatter does not count, that of its neighbours does; four times at most a round.
-  PixelSums sums(Window{0, 0, 7, 7}, 1, false);
-  for (std::size_t p = 0; p < sums.samples.size(); ++p) {
-    sums.samples[p] = 4;
-    sums.luminance[p] = 4.0;
-    sums.luminance2[p] = 4.0;
-  }
-  const std::size_t middle = sums.window.index(3, 3);
-  sums.luminance2[middle] = 4.0 + 3.0 * 9.0;  // variance 9 of a sample, deviation 3
-  const auto wanted = wanted_samples(sums, 0.3, 8.0, 4, 256);
-  EXPECT_EQ(wanted[middle], 4U);
-  EXPECT_EQ(wanted[sums.window.index(2, 3)], 16U);  // 3 / 0.3 = 10, rounded up to a power of two
-  EXPECT_EQ(wanted[sums.window.index(1, 3)], 4U);
-  EXPECT_EQ(wanted_samples(sums, 0.03, 8.0, 4, 256)[sums.window.index(4, 4)],
-            16U);  // 100, but 4 x 4
-  // From half of the luminance of 1 on, proportion counts: deviation 3 * 0.5.
-  EXPECT_EQ(wanted_samples(sums, 0.3, 0.5, 4, 256)[sums.window.index(2, 3)], 8U);
-}
-
 // Pixels of 4 samples: columns 0 to 6 of one luminance, 7 to 14 of 1.
 PixelSums dim_and_bright(double dim) {
   PixelSums sums(Window{0, 0, 15, 7}, 1, false);
@@ -97,10 +77,8 @@ TEST(PixelSamples, LightInANarrowGapIsGatheredOncePerPixel) {
   RenderOptions options;
   options.columns = options.rows = 4;
   options.gather_rays = 32;
-  options.shared.on = true;
-  options.shared.noise = 1e6;  // no further samples
   const auto gather_rays = [&](int samples) {
-    options.shared.least_samples = samples;
+    options.camera_samples = samples;
     return render(prepared, solution, camera, options).report.rays.gather;
   };
   EXPECT_GT(gather_rays(4), 0U);

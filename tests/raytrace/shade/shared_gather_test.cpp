@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared gather rays and uneven camera samples, against the plain render that they stand for.
+// Gather points that serve all samples of their pixel, against all light paths.
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <cmath>
 
 #include "base/parallel.h"
+#include "raytrace/paths/path_tracer.h"
 #include "raytrace/render.h"
+#include "raytrace/tuning.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::raytrace {
@@ -67,8 +69,6 @@ RenderOptions shared_options(int columns = 48, int rows = 40) {
   options.columns = columns;
   options.rows = rows;
   options.gather_rays = 32;
-  options.shared.on = true;
-  options.shared.noise = 0.02;
   options.aovs = {"variance"};
   return options;
 }
@@ -79,14 +79,16 @@ double mean(const Frame& frame) {
   return sum / static_cast<double>(frame.image.pixel_count());
 }
 
-TEST(SharedGather, PictureIsThePlainOneWithinTheStatedErrors) {
+TEST(SharedGather, PictureIsThatOfAllPathsWithinTheStatedErrors) {
   // z = difference / sqrt(sum of both variances). Stated variances are those of independent
   // samples, so that low-discrepancy ones stay below: the mean of z^2 is at most 1 + what sharing
   // bends.
-  RenderOptions plain = shared_options();
-  plain.shared.on = false;
-  plain.gather_rays = 1024;
-  const Frame oracle = studio().picture(plain), quick = studio().picture(shared_options());
+  PathOptions paths;
+  paths.columns = shared_options().columns;
+  paths.rows = shared_options().rows;
+  paths.paths_per_pixel = 1024;
+  const Frame oracle = trace_paths(studio().prepared, studio().room.camera, paths);
+  const Frame quick = studio().picture(shared_options());
   const auto& a = oracle.image.find("G")->values;
   const auto& b = quick.image.find("G")->values;
   const auto& va = oracle.image.find("variance")->values;
@@ -102,20 +104,18 @@ TEST(SharedGather, PictureIsThePlainOneWithinTheStatedErrors) {
               4.0 * quick.report.relative_noise / std::sqrt(n) + 0.005);
 }
 
-// Every surface of the closed room reflects: each gather ray of a camera sample is followed on by
-// at least one ray of what the solution lacks where it ended.
-TEST(SharedGather, PathsBehindCameraSamplesAreCounted) {
-  RenderOptions plain = shared_options();
-  plain.shared.on = false;
-  plain.gather_rays = 16;  // by 4 camera samples of 4 rays
-  const RayCounts rays = studio().picture(plain).report.rays;
-  EXPECT_EQ(rays.camera, 48U * 40U * 4U);
-  EXPECT_GE(rays.gather, 2U * 4U * rays.camera);
+// Every pixel has the samples that are set, and every point its rays.
+TEST(SharedGather, FixedNumbersAreTheSameEverywhere) {
+  RenderOptions options = shared_options();
+  options.camera_samples = 4;
+  const RenderReport report = studio().picture(options).report;
+  EXPECT_EQ(report.rays.camera, 48U * 40U * 4U);
+  EXPECT_EQ(report.most_camera_samples, 4);
+  EXPECT_EQ(report.gather_rays, options.gather_rays);
 }
 
 TEST(SharedGather, CropAndReplayHaveThePixelsOfTheWholePicture) {
   RenderOptions options = shared_options();
-  options.shared.noise = 0.002;  // five rounds of samples, each looks at the neighbours of the last
   options.aovs = {"direct", "indirect", "variance", "depth"};
   const Frame whole = studio().picture(options);
   for (const Window& crop : {Window{13, 9, 11, 17}, Window{30, 22, 1, 1}, Window{0, 0, 5, 3}}) {
@@ -148,9 +148,9 @@ TEST(SharedGather, SameBytesOnOneAndTwoThreads) {
 }
 
 TEST(SharedGather, DirectIndirectAndSpecularAddUpToThePicture) {
-  for (const bool shares : {true, false}) {
+  for (const double error : {0.0, 0.1}) {
     RenderOptions options = shared_options(24, 20);
-    options.shared.on = shares;
+    options.error = error;
     options.aovs = {"direct", "indirect", "specular"};
     const Frame frame = studio().picture(options);
     const Frame direct = [&] {
@@ -210,8 +210,6 @@ TEST(SharedGather, PathsBetweenMirrorsHaveNoEnd) {
   camera.position = Vec3(0.3, 0.4, 0.5);
   camera.look_at = Vec3(1, 0.6, 0.3);
   RenderOptions options = shared_options(32, 32);
-  options.shared.on = false;
-  options.gather_rays = 256;
   const Frame frame = render(prepared, prepared.solve({}), camera, options);
   double variance = 0.0;
   for (const float v : frame.image.find("variance")->values) variance += double(v);
@@ -259,15 +257,15 @@ TEST(SharedGather, TwoSamplesAreEnoughToBeginWithWhereNoEdgeIsNear) {
     options.crop = crop;
     return studio().picture(options).report.camera_samples;
   };
-  const double least = options.shared.least_samples;
+  const double least = tuning::initial_camera_samples;
   EXPECT_EQ(samples({60, 0, 8, 8}), least / 2.0);
   EXPECT_GT(samples({36, 0, 8, 8}), least / 2.0);
 }
 
 TEST(SharedGather, AStopAtTheFirstQuestionCostsLittle) {
-  // One of 25 pixels of a surface is sampled, with all strays that no pixel serves: less than half
-  // of the rays of the first look all over the picture, which a stop at its end leaves. At edges
-  // two camera samples tell what they are off by.
+  // One of 25 pixels of a surface is sampled, with all off-grid points that no pixel serves: less
+  // than half of the rays of the first look all over the picture, which a stop at its end leaves.
+  // At edges two camera samples tell what they are off by.
   RenderOptions options = shared_options(96, 80);
   options.error = 1.0;
   const auto gathered = [&](bool at_once) {

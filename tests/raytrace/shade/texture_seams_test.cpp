@@ -61,7 +61,6 @@ Frame picture_of(const scenes::Scene& scene, double distance_m, double error, st
   solve.patch_edge_m = 0.5;
   RenderOptions options;
   options.columns = options.rows = seams_edge_px;
-  options.shared.on = true;
   options.error = error;
   options.seed = seed;
   options.time_limit_s = time_limit_s;

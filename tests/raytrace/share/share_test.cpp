@@ -49,8 +49,8 @@ TEST(Share, NoiseFallsAndNoLessIsStated) {
 
 // A detail of signal s and noise q of which c = sure / (sure + q), sure = s - 0.3 q, is kept leaves
 // (1 - c)^2 s + c^2 q; here s = 2 q, c = 17 / 27. A finer one that nothing is kept of is held
-// between none and that signal. A stray has no coarser details, and one that is kept is what it was
-// found to be: s = 200, q = 100.
+// between none and that signal. A off-grid point has no coarser details, and one that is kept is
+// what it was found to be: s = 200, q = 100.
 TEST(Share, WhatNoiseHidesIsNoMoreThanCoarserDetailsHold) {
   Shared shared;
   shared.resize(4);
@@ -73,7 +73,7 @@ TEST(Share, WhatFewDetailsSayIsDoubtedMore) {
   shared.resize(1);
   shared.signal[0] = {2.0F};
   shared.noise[0] = {1.0F};
-  shared.few[0] = {0.125F};
+  shared.inverse_dof[0] = {0.125F};
   constexpr double c = 1.35 / 2.35, lost = (1.0 - c) * (1.0 - c);
   EXPECT_NEAR(shared.squared_error_with(0, 1.0), 2.0 * lost + c * c + 12.0 * lost / 8.0, 1e-5);
 }

@@ -15,7 +15,7 @@ namespace {
 // Of a signal that is not there: its square, less the variance that is stated.
 double more_than_stated(const Shared& shared, std::size_t p, std::size_t level) {
   const double noise = double(shared.noise[level][p]), found = double(shared.signal[level][p]);
-  return found * found - noise * noise * 2.0 * double(shared.few[level][p]);
+  return found * found - noise * noise * 2.0 * double(shared.inverse_dof[level][p]);
 }
 
 // The left columns are another surface, whose signals, alike in both halves, differ by so much more
@@ -56,7 +56,8 @@ TEST(Signals, ASmoothPictureStatesLittleThatNoiseMayHide) {
       const double off = double(shared.radiance[p].g) - 10.0;
       found += off * off;
       stated += double(shared.squared_error[p]);
-      const double sigma = double(shared.noise[0][p]) * std::sqrt(2.0 * double(shared.few[0][p]));
+      const double sigma =
+          double(shared.noise[0][p]) * std::sqrt(2.0 * double(shared.inverse_dof[0][p]));
       alone += sigma / std::sqrt(2.0 * base::pi);
     }
   }
@@ -108,9 +109,9 @@ TEST(Signals, HowFarOffASignalIsByChanceGoesByTheSamplesThere) {
       estimate.samples[p] = static_cast<float>(2.0 * half);
     }
     const Shared shared = share(neighbours, estimate);
-    for (std::size_t few = 0; few < more.size(); ++few) {
-      const std::size_t p = few == 0 ? pixel(24, 24) : pixel(26, 26);
-      more[few].push_back(more_than_stated(shared, p, 0));
+    for (std::size_t inverse_dof = 0; inverse_dof < more.size(); ++inverse_dof) {
+      const std::size_t p = inverse_dof == 0 ? pixel(24, 24) : pixel(26, 26);
+      more[inverse_dof].push_back(more_than_stated(shared, p, 0));
     }
   }
   for (const std::vector<double>& of_point : more) expect_none(of_point);

@@ -106,9 +106,8 @@ double image_px2() {
 
 const std::vector<std::function<void(RenderOptions&)>>& every_way() {
   static const std::vector<std::function<void(RenderOptions&)>> ways = {
-      [](RenderOptions& options) { options.shared.on = false; },
-      [](RenderOptions& options) { options.shared.on = true; },
-      [](RenderOptions& options) { options.shared.on = true, options.error = 0.05; }};
+      [](RenderOptions& options) { options.camera_samples = 4; },
+      [](RenderOptions& options) { options.error = 0.05; }};
   return ways;
 }
 
@@ -127,9 +126,9 @@ TEST(SmallSources, LampsAndEmittersSendWhatTheirImagesHold) {
   }
 }
 
-// A spot of a fifth of a degree and less lights a few mm of a wall 0.8 m in front of the camera, whose
-// image is at most a hundredth of a pixel: a flux Phi leaves it as the intensity rho Phi / pi toward
-// the camera, and the picture has as many px^2 a square metre everywhere.
+// A spot of a fifth of a degree and less lights a few mm of a wall 0.8 m in front of the camera,
+// whose image is at most a hundredth of a pixel: a flux Phi leaves it as the intensity rho Phi / pi
+// toward the camera, and the picture has as many px^2 a square metre everywhere.
 TEST(SmallSources, NarrowBeamsSendWhatTheirSpotsHold) {
   const double px_per_m = pixels_across / 2.0 / std::tan(base::radians(30.0)) / 0.8;
   for (const double field_deg : {0.05, 0.2}) {
@@ -179,7 +178,6 @@ TEST(SmallSources, ASunIsOne) {
 TEST(SmallSources, HiddenOnesAndPartsOfLargeOnesTakeNoMoreSamples) {
   const auto samples = [](const tests::SceneBuilder& builder) {
     RenderOptions options = options_of(1);
-    options.shared.on = true;
     options.error = 0.05;
     return source_picture(builder.scene, into_room(), options).report.most_camera_samples;
   };
@@ -199,8 +197,8 @@ TEST(SmallSources, HiddenOnesAndPartsOfLargeOnesTakeNoMoreSamples) {
 // The cases that follow are those of "rare light": pictures of 24 x 24 pixels and less that missed
 // all of such light in every seed, beside stated errors of 5 %.
 
-// The Sun in a flat mirror: its image has the Sun's solid angle, E times the mirror's share is what a
-// plane of unit distance shows of it near the axis, where the camera looks. Four pixels share it.
+// The Sun in a flat mirror: its image has the Sun's solid angle, E times the mirror's share is what
+// a plane of unit distance shows of it near the axis, where the camera looks. Four pixels share it.
 TEST(SmallSources, TheSunsImageInAFlatMirrorIsOne) {
   tests::SceneBuilder builder;
   scenes::Material mirror = tests::grey(0.0);

@@ -77,7 +77,6 @@ TEST(LightStrips, ALineOfSunlightIsKnownToTheWantedError) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
       RenderOptions options;
       options.columns = options.rows = slot_px;
-      options.shared.on = true;
       options.indirect = Indirect::None;
       options.error = 0.05;
       options.seed = seed;

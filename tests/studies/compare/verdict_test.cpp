@@ -43,8 +43,7 @@ Comparison compared(const scenes::Scene& scene) {
   CompareOptions options;
   options.columns = options.rows = 16;
   options.gather_rays = 16;
-  options.shared.on = true;
-  options.reference_rays = 256;
+  options.reference_factor = 16;
   options.distributed_lights = {4, 16};
   options.solver.form_factor_rays = 256;
   return compare(prepared, tests::above(1.2, 1.6), options);

@@ -134,7 +134,6 @@ TEST(Memory, EveryLayerOfThePictureCounts) {
   EXPECT_NEAR(bytes({"direct"}) - bytes({}), 12e6 + 36e6, 1.0);
   // To a wanted error rays are cast round by round: sums of 12 bytes of three kinds, one of them as
   // shared, and a tenth more for strays, stay until the end.
-  picture.shared.on = true;
   const double at_once = bytes({});
   picture.error = 0.05;
   EXPECT_NEAR(bytes({}) - at_once, 55e6, 3e6);

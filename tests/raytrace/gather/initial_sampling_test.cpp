@@ -7,9 +7,9 @@
 #include <cmath>
 #include <utility>
 
-#include "raytrace/passes/passes.h"
-#include "raytrace/passes/rounds.h"
-#include "raytrace/passes/sample_plan.h"
+#include "raytrace/adaptive/adaptive_render.h"
+#include "raytrace/adaptive/allocator.h"
+#include "raytrace/adaptive/sample_plan.h"
 #include "raytrace/shade/shading_setup.h"
 #include "tests/support/scene_builder.h"
 
@@ -42,9 +42,9 @@ scenes::Scene room_with_chips() {
 
 // Seen from a corner: what is off is mostly what is gathered.
 struct Looked {
-  explicit Looked(double smooth_share, scenes::Scene seen = room(false), std::uint64_t of_seed = 1)
-      : share(smooth_share), seed(of_seed), scene(std::move(seen)) {}
-  double share;
+  explicit Looked(bool denoised, scenes::Scene seen = room(false), std::uint64_t of_seed = 1)
+      : denoise(denoised), seed(of_seed), scene(std::move(seen)) {}
+  bool denoise;
   std::uint64_t seed;
   scenes::Scene scene;
   tests::Prepared prepared{scene};
@@ -64,11 +64,10 @@ struct Looked {
   RenderOptions options = [this] {
     RenderOptions of_a_coarse_picture;
     of_a_coarse_picture.columns = of_a_coarse_picture.rows = edge_px;
-    of_a_coarse_picture.shared.on = true;
-    of_a_coarse_picture.shared.smooth_share = share;
+    of_a_coarse_picture.denoise = denoise;
     of_a_coarse_picture.error = 1.0;
     of_a_coarse_picture.seed = seed;
-    of_a_coarse_picture.first_look_pixels = 1U << 16U;
+    of_a_coarse_picture.initial_sampling_pixels = 1U << 16U;
     return of_a_coarse_picture;
   }();
   // What is sampled points at what it was sampled with.
@@ -81,7 +80,7 @@ struct Looked {
   // Whether a first look is to leave that pixel out.
   [[nodiscard]] bool leaves(std::size_t pixel) const {
     const int x = static_cast<int>(pixel % edge_px), y = static_cast<int>(pixel / edge_px);
-    return (x + y) % 2 != 0 && field().is_even(x, y);
+    return (x + y) % 2 != 0 && field().is_interior(x, y);
   }
   [[nodiscard]] bool is_left_out(Gathered kind, int x, int y) const {
     return field().samples(kind, field().window().index(x, y)) == 0.0F;
@@ -89,12 +88,12 @@ struct Looked {
 };
 
 const Looked& looked() {
-  static const Looked one(0.25);
+  static const Looked one(true);
   return one;
 }
 
-TEST(FirstLook, LeavesNothingOutWhereNeighboursShareNothing) {
-  const Looked alone(0.0);
+TEST(InitialSampling, LeavesNothingOutWhereNeighboursShareNothing) {
+  const Looked alone(false);
   for (const Gathered kind : {Gathered::Solution, Gathered::Residual}) {
     for (int y = 0; y < edge_px; ++y) {
       for (int x = 0; x < edge_px; ++x) ASSERT_FALSE(alone.is_left_out(kind, x, y));
@@ -102,7 +101,7 @@ TEST(FirstLook, LeavesNothingOutWhereNeighboursShareNothing) {
   }
 }
 
-TEST(FirstLook, LeavesEverySecondPixelOfASurfaceToThoseBesideIt) {
+TEST(InitialSampling, LeavesEverySecondPixelOfASurfaceToThoseBesideIt) {
   for (const Gathered kind : {Gathered::Solution, Gathered::Residual}) {
     int left_out = 0;
     for (int y = 0; y < edge_px; ++y) {
@@ -116,7 +115,7 @@ TEST(FirstLook, LeavesEverySecondPixelOfASurfaceToThoseBesideIt) {
   }
 }
 
-TEST(FirstLook, SharpLobesGetMoreRays) {
+TEST(InitialSampling, SharpLobesGetMoreRays) {
   // Two surfaces: a wall whose lobe is wide, and a plate with a narrow one whose peak is 40 times
   // as high. Where the camera sees both, few pixels show the plate, so that the mean is nearer to
   // the wall's: the plate gets as many times two rays as its lobe reflects more than the mean, down
@@ -165,7 +164,7 @@ TEST(FirstLook, SharpLobesGetMoreRays) {
 }
 
 // Far from all else, too, as on the wall behind the border of a sheet.
-TEST(FirstLook, RaysBesideEdgesStartAllOverThePixel) {
+TEST(InitialSampling, RaysBesideEdgesStartAllOverThePixel) {
   const Looked at_sheet(0.25, room(true));
   const GatherField& field = at_sheet.field();
   int beside = 0, alone = 0;
@@ -173,7 +172,7 @@ TEST(FirstLook, RaysBesideEdgesStartAllOverThePixel) {
     for (int x = 0; x < edge_px; ++x) {
       const std::size_t p = field.window().index(x, y);
       if (field.points()[p].reach_m <= 0.0F) continue;
-      if (field.is_even(x, y)) {
+      if (field.is_interior(x, y)) {
         alone += field.origins_at(p) == 1 ? 1 : 0;
       } else {
         EXPECT_GT(field.origins_at(p), 1U) << x << ' ' << y;
@@ -188,7 +187,7 @@ TEST(FirstLook, RaysBesideEdgesStartAllOverThePixel) {
 // What sharing blurs there goes to nothing as that of all others does: where squared error has a
 // price, such points get the fewest samples of their own, or four times as many. An eighth of all
 // pixels at least, within four standard errors of the mean over twelve seeds: chance decides where.
-TEST(FirstLook, WhatItLeavesOutIsSampledByRounds) {
+TEST(InitialSampling, WhatItLeavesOutIsSampledByRounds) {
   constexpr double seeds = 12.0;
   std::array<double, 2> sum{}, squared{};
   for (std::uint64_t seed = 1; seed <= std::uint64_t(seeds); ++seed) {
@@ -218,7 +217,7 @@ TEST(FirstLook, WhatItLeavesOutIsSampledByRounds) {
 // Points that stand alone are sampled by likely noise: three in four at least of those whose halves
 // agree so well by chance that what is likely is ten times what they state. By what they state
 // alone one in five would be.
-TEST(FirstLook, HalvesThatAgreeByChanceAreLookedAtAgain) {
+TEST(InitialSampling, HalvesThatAgreeByChanceAreLookedAtAgain) {
   int agree = 0, sampled = 0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Looked one(0.25, room_with_chips(), seed);
@@ -226,8 +225,8 @@ TEST(FirstLook, HalvesThatAgreeByChanceAreLookedAtAgain) {
     const SamplePlan plan = planner.plan(0.0, 1e30);
     for (const Gathered kind : {Gathered::Solution, Gathered::Residual}) {
       const Shared& shared = one.field().shared(kind);
-      for (std::size_t p = 0; p < shared.likely_more.size(); ++p) {
-        if (shared.likely_more[p] <= 10.0F * shared.squared_error[p]) continue;
+      for (std::size_t p = 0; p < shared.variance_prior.size(); ++p) {
+        if (shared.variance_prior[p] <= 10.0F * shared.squared_error[p]) continue;
         ++agree;
         sampled += plan.field[static_cast<std::size_t>(kind)][p] > 0 ? 1 : 0;
       }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gather points off the grid: where a pixel shows several surfaces, one for each that is not behind
 // its centre. What nearby points of the grid say of the same surface is told apart from what is the
-// case there by the stray's own samples, as far as these know better (Wiener, as in share.h):
+// case there by the off-grid point's own samples, as far as these know better (Wiener, as in
+// share.h):
 //   value = shared + c (own - shared),  c = s / (s + q)
-// s: mean square of the true difference, a mean over the strays of a region, no less
-// than the noise there may hide; q: noise of as many samples as the stray has, each of which has
-// the mean noise of a sample there.
+// s: mean square of the true difference, a mean over the off-grid points of a region, no less
+// than the noise there may hide; q: noise of as many samples as the off-grid point has, each of
+// which has the mean noise of a sample there.
 #pragma once
 
 #include <bit>
@@ -19,7 +20,7 @@
 
 namespace earthshine::raytrace {
 
-struct Stray {
+struct OffGridPoint {
   std::uint32_t pixel = 0;  // of the window
   std::uint32_t base =
       0;  // nearest point of the grid on the same surface; no_base if there is none
@@ -28,26 +29,27 @@ struct Stray {
 };
 inline constexpr std::uint32_t no_base = 0xffffffffU;
 
-// Parts of the picture, over which strays are held to be alike, row by row.
+// Parts of the picture, over which off-grid points are held to be alike, row by row.
 [[nodiscard]] inline std::uint32_t region_of(std::size_t pixel, std::size_t columns) {
   const std::size_t x = pixel % columns / tuning::region_px,
                     y = pixel / columns / tuning::region_px;
   return static_cast<std::uint32_t>(y * (columns / tuning::region_px + 1) + x);
 }
 
-// Strays that lie side by side on one surface, each among its own: the last ones of some pixels.
-struct Peers {
-  std::span<const Stray> strays;
+// OffGrid that lie side by side on one surface, each among its own: the last ones of some pixels.
+struct MirrorNeighbourhood {
+  std::span<const OffGridPoint> off_grid_points;
   std::span<const std::uint32_t> first;  // of a pixel, and behind the last
-  std::span<const std::uint64_t> masks;  // of a stray: bits of the pixels about it, row by row
-  std::ptrdiff_t columns = 0;            // of the window
+  std::span<const std::uint64_t>
+      masks;                   // of an off-grid point: bits of the pixels about it, row by row
+  std::ptrdiff_t columns = 0;  // of the window
   template <class Visit>
-  void each(std::size_t stray, const Visit& visit) const {
-    std::uint64_t bits = masks[stray];
+  void each(std::size_t off_grid_point, const Visit& visit) const {
+    std::uint64_t bits = masks[off_grid_point];
     for (; bits != 0; bits &= bits - 1) {
       constexpr int width = 2 * tuning::mirror_reach_px + 1;
       const int bit = std::countr_zero(bits);
-      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(strays[stray].pixel) +
+      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(off_grid_points[off_grid_point].pixel) +
                                 (bit / width - tuning::mirror_reach_px) * columns + bit % width -
                                 tuning::mirror_reach_px;
       visit(std::size_t{first[static_cast<std::size_t>(at) + 1]} - 1);
@@ -55,12 +57,14 @@ struct Peers {
   }
 };
 
-// Completes `shared`, which knows the points of the grid, by the strays: point grid + k of the
-// estimate is strays[k].
-void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared& shared);
+// Completes `shared`, which knows the points of the grid, by the off-grid points: point grid + k of
+// the estimate is off-grid points[k].
+void add_off_grid_points(std::span<const OffGridPoint> off_grid_points, const Estimate& estimate,
+                         Shared& shared);
 
-// Then strays that have peers are told apart from the mean of these in the same way; s and q are
-// means over the peers.
-void share_among_peers(const Peers& peers, const Estimate& estimate, Shared& shared);
+// Then off-grid points that have mirror neighbours are told apart from the mean of these in the
+// same way; s and q are means over the mirror neighbours.
+void share_among_mirror_neighbours(const MirrorNeighbourhood& mirror_neighbours,
+                                   const Estimate& estimate, Shared& shared);
 
 }  // namespace earthshine::raytrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "raytrace/passes/stated_error.h"
+#include "raytrace/adaptive/stated_error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,32 +40,33 @@ class FieldOfPixel {
 
 }  // namespace
 
-StatedError state_error(const PixelSums& sums, const GatherField* field, const Window& window) {
+StatedError state_error(const PixelSums& sums, const GatherField* field) {
+  const Window& window = sums.window;
   StatedError stated(window.pixel_count());
   const std::size_t layers = field != nullptr ? field->image_layers() : sums.image_layers;
   const auto state_row = [&](int y) {
     for (int x = window.x; x < window.x + window.columns; ++x) {
-      const std::size_t from = sums.window.index(x, y), to = window.index(x, y);
-      const double n = sums.samples[from];
+      const std::size_t p = window.index(x, y);
+      const double n = sums.samples[p];
       if (n == 0.0) continue;
       Rgb own(0.0);
-      for (std::size_t k = 0; k < layers; ++k) own += Rgb(sums.radiance[from * sums.entries + k]);
-      const double all = base::luminance(own), seen_source = sums.source[from].luminance;
+      for (std::size_t k = 0; k < layers; ++k) own += Rgb(sums.radiance[p * sums.entries + k]);
+      const double all = base::luminance(own), seen_source = sums.source[p].luminance;
       double luminance = std::abs(all - seen_source) > rounding * all ? all - seen_source : 0.0;
-      std::array<float, error_parts>& squared = stated.squared[to];
+      std::array<float, error_parts>& squared = stated.squared[p];
       if (field != nullptr) {
-        const FieldOfPixel read(sums, *field, from);
+        const FieldOfPixel read(sums, *field, p);
         luminance += read.luminance;
         for (std::size_t kind = 0; kind < gathered_kinds; ++kind) {
           squared[kind] = read.squared(kind, n);
         }
       }
-      double camera = sums.squared_error(from);
-      if (!sums.unexplained.empty()) camera += std::pow(double(sums.unexplained[from]), 2.0);
+      double camera = sums.squared_error(p);
+      if (!sums.unexplained.empty()) camera += std::pow(double(sums.unexplained[p]), 2.0);
       squared[static_cast<std::size_t>(ErrorPart::Camera)] = static_cast<float>(camera);
-      stated.luminance[to] = static_cast<float>(luminance / n);
-      stated.source[to] = static_cast<float>(seen_source / n);
-      stated.shows[to] = sums.source[from].shows(n);
+      stated.luminance[p] = static_cast<float>(luminance / n);
+      stated.source[p] = static_cast<float>(seen_source / n);
+      stated.shows[p] = sums.source[p].shows(n);
     }
   };
   base::parallel_chunks(static_cast<std::size_t>(window.rows), 4,
@@ -92,17 +93,18 @@ ErrorSums add_up(const StatedError& stated, std::span<const std::size_t> pixels)
   if (sums.luminance == 0.0) sums.luminance = sources, sums.pixels += edges;
   if (sums.pixels == 0) return sums;
   sums.luminance /= static_cast<double>(sums.pixels);
-  sums.yardstick = sums.luminance;
+  sums.reference_luminance = sums.luminance;
   if (sums.luminance < 0.0) {
     double square = 0.0;
     for (const std::size_t p : pixels) {
       if (stated.shows[p] == Shows::Nothing) continue;
       for (const float part : stated.squared[p]) square += double(part);
     }
-    sums.yardstick = 0.5 * std::sqrt(square / static_cast<double>(sums.pixels));
+    sums.reference_luminance = 0.5 * std::sqrt(square / static_cast<double>(sums.pixels));
   }
-  if (sums.yardstick <= 0.0) return sums;
-  const double scale = 1.0 / (static_cast<double>(sums.pixels) * sums.yardstick * sums.yardstick);
+  if (sums.reference_luminance <= 0.0) return sums;
+  const double scale = 1.0 / (static_cast<double>(sums.pixels) * sums.reference_luminance *
+                              sums.reference_luminance);
   double fourths = 0.0;
   for (const std::size_t p : pixels) {
     if (stated.shows[p] == Shows::Nothing) continue;
@@ -117,7 +119,8 @@ ErrorSums add_up(const StatedError& stated, std::span<const std::size_t> pixels)
   }
   const double square = sums.squared_error();
   if (square <= 0.0) return sums;
-  sums.doubt = std::sqrt(1.0 + tuning::one_sided_90 * std::sqrt(2.0 / 3.0 * fourths) / square);
+  sums.confidence_factor =
+      std::sqrt(1.0 + tuning::one_sided_90 * std::sqrt(2.0 / 3.0 * fourths) / square);
   return sums;
 }
 

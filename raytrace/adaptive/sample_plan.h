@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "raytrace/passes/stated_error.h"
+#include "raytrace/adaptive/stated_error.h"
 #include "raytrace/shade/pixel_sums.h"
 
 namespace earthshine::raytrace {
@@ -42,9 +42,9 @@ class SamplePlanner {
 
   // Of the picture as it is: relative to its mean luminance, squared.
   [[nodiscard]] double squared_error() const {
-    return whole_.yardstick > 0.0 ? whole_.squared_error() : 0.0;
+    return whole_.reference_luminance > 0.0 ? whole_.squared_error() : 0.0;
   }
-  [[nodiscard]] double doubt() const { return whole_.doubt; }
+  [[nodiscard]] double confidence_factor() const { return whole_.confidence_factor; }
   // The cheapest that is expected to bring the squared error down to `wanted`, at no more than
   // most_cost.
   [[nodiscard]] SamplePlan plan(double wanted, double most_cost);
@@ -69,12 +69,12 @@ class SamplePlanner {
   };
   // At the gain of every point and pixel, once a plan is asked for: a picture that is exact enough
   // needs none.
-  void look();
-  // Appends the gains of [0, count): look(begin, end, gains) fills in those of each part.
-  template <class Look>
-  void look_at(std::size_t count, const Look& look);
-  void look_at_field(double scale);
-  void look_at_pixels(double scale);
+  void find_gains();
+  // Appends the gains of [0, count): fill(begin, end, gains) fills in those of each part.
+  template <class Fill>
+  void append_gains(std::size_t count, const Fill& fill);
+  void find_field_gains(double scale);
+  void find_pixel_gains(double scale);
   struct Outcome {
     double squared_error = 0.0, cost = 0.0;
     Outcome& operator+=(const Outcome& other) {
@@ -91,7 +91,7 @@ class SamplePlanner {
   SampleCosts costs_;
   StatedError stated_;
   ErrorSums whole_;
-  bool looked_ = false;
+  bool has_gains_ = false;
   std::unique_ptr<Gain[]> gains_;
   std::size_t gain_count_ = 0;
 };

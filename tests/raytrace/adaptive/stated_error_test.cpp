@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a picture's statement is worth that pixels' halves tell.
-#include "raytrace/passes/stated_error.h"
+#include "raytrace/adaptive/stated_error.h"
 
 #include <gtest/gtest.h>
 
@@ -25,16 +25,16 @@ TEST(Doubt, IsThatOfThePixelsThatHoldTheError) {
   for (const std::size_t n : {1U, 100U}) {
     StatedError stated = grey(200);
     for (std::size_t p = 0; p < n; ++p) stated.squared[p] = {0.01F, 0.0F, 0.0F, 0.02F};
-    EXPECT_NEAR(add_up(stated).doubt,
+    EXPECT_NEAR(add_up(stated).confidence_factor,
                 std::sqrt(1.0 + 1.2816 * std::sqrt(2.0 / 3.0 / static_cast<double>(n))), 1e-6);
   }
-  EXPECT_EQ(add_up(grey(200)).doubt, 1.0);
+  EXPECT_EQ(add_up(grey(200)).confidence_factor, 1.0);
 }
 
 // Halves of normal noise of variance 1 in 2500 pixels: once in ten times the true error, 1, is more
-// than what is stated and its doubt. 4000 pictures tell that to the root of 0.1 * 0.9 / 4000; the
-// sum of 2500 squares has a skewness g of the root of 8 / 2500, and over a spread that is told by
-// the same squares that adds phi(z) (2 z^2 + 1) / 6 g, phi the normal density.
+// than what is stated and its confidence_factor. 4000 pictures tell that to the root of 0.1 * 0.9 /
+// 4000; the sum of 2500 squares has a skewness g of the root of 8 / 2500, and over a spread that is
+// told by the same squares that adds phi(z) (2 z^2 + 1) / 6 g, phi the normal density.
 TEST(Doubt, IsExceededOnceInTenTimes) {
   constexpr int pictures = 4000;
   constexpr std::size_t pixels = 2500;
@@ -48,7 +48,7 @@ TEST(Doubt, IsExceededOnceInTenTimes) {
       stated.squared[p][3] = d * d;
     }
     const ErrorSums sums = add_up(stated);
-    if (sums.doubt * std::sqrt(sums.squared_error()) < 1.0) ++exceeded;
+    if (sums.confidence_factor * std::sqrt(sums.squared_error()) < 1.0) ++exceeded;
   }
   const double density = 0.17550, z = 1.2816;
   const double skewed = density * (2.0 * z * z + 1.0) / 6.0 * std::sqrt(8.0 / pixels);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which gather points a first look samples, and which where a stop or a time limit leaves no time
+// Which gather points get initial samples, and which where a stop or a time limit leaves no time
 // for all of these.
 #include <algorithm>
 #include <bit>
@@ -17,8 +17,8 @@ double GatherField::mean_lobe() const {
   return count > 0.0 ? sum / count : 0.0;
 }
 
-void GatherField::look_first(Gathered kind, std::uint32_t each, bool every_second,
-                             const std::function<bool()>& stop) {
+void GatherField::sample_initial(Gathered kind, std::uint32_t each, bool every_second,
+                                 const std::function<bool()>& stop) {
   std::vector<std::uint32_t> samples(points_.size(), each);
   const bool few_rays = kind == Gathered::Lobe && each <= fewest_samples(kind);
   const double mean = few_rays ? mean_lobe() : 0.0;
@@ -28,12 +28,12 @@ void GatherField::look_first(Gathered kind, std::uint32_t each, bool every_secon
   }
   for (std::size_t p = 0; every_second && setting_.shares && p < grid_; ++p) {
     const auto [x, y] = place_of(p);
-    if ((x + y) % 2 != 0 && is_even(x, y)) samples[p] = 0;
+    if ((x + y) % 2 != 0 && is_interior(x, y)) samples[p] = 0;
   }
   cast(kind, samples, 0, stop);
 }
 
-void GatherField::look_quickly(Gathered kind) {
+void GatherField::sample_sparse(Gathered kind) {
   if (!gathers(kind)) return;
   const auto wants = [&](std::size_t p) {
     return points_[p].reach_m > 0.0F && reflected(kind, p) > 0.0;
@@ -91,12 +91,15 @@ void GatherField::look_quickly(Gathered kind) {
       if (wants(at(x, y)) && !is_served(x, y)) sample(best_for(x, y));
     }
   }
-  const Peers peers{strays_, first_stray_, peers_, window_.columns};
+  const MirrorNeighbourhood mirror_neighbours{off_grid_points_, first_off_grid_, mirror_neighbours_,
+                                              window_.columns};
   for (std::size_t p = grid_; p < points_.size(); ++p) {
-    if (!wants(p) || strays_[p - grid_].base != no_base) continue;
+    if (!wants(p) || off_grid_points_[p - grid_].base != no_base) continue;
     int served_by = 0;
-    peers.each(p - grid_, [&](std::size_t peer) { served_by += sampled[grid_ + peer]; });
-    if (served_by < tuning::enough_peers) sample(p);
+    mirror_neighbours.each(p - grid_, [&](std::size_t mirror_neighbour) {
+      served_by += sampled[grid_ + mirror_neighbour];
+    });
+    if (served_by < tuning::enough_mirror_neighbours) sample(p);
   }
   cast(kind, missing, 0, {});
 }

@@ -13,7 +13,6 @@ namespace earthshine::raytrace {
 
 // What the window shows without sources that the camera sees itself, and how far off it may be.
 // Single pixels are stated by few samples and scatter; sums over many are right.
-[[nodiscard]] StatedError state_error(const PixelSums& sums, const GatherField* field,
-                                      const Window& window);
+[[nodiscard]] StatedError state_error(const PixelSums& sums, const GatherField* field);
 
 }  // namespace earthshine::raytrace

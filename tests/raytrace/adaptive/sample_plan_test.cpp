@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the next camera samples of a picture go, told by sums that are made up.
-#include "raytrace/passes/sample_plan.h"
+#include "raytrace/adaptive/sample_plan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gather points that share with none, and what the halves of their own rounds say.
-#include "raytrace/share/alone.h"
+#include "raytrace/share/isolated.h"
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ std::vector<GatherPoint> with_one_behind() {
 // 1 / 48. As each round's difference is about normal, squares added vary by
 //   2 (8 + 8 + 32)^-2 (8^2 + 8^2 + 32^2) = 1
 // of their mean squared, half of what one difference of all would: 2.
-TEST(Alone, NoiseOfAMeanIsToldByAllOfItsRounds) {
+TEST(IsolatedPoints, NoiseOfAMeanIsToldByAllOfItsRounds) {
   constexpr int fields = 20000;
   base::Rng rng(base::Key(1, base::Stream::Test, 51));
   double mean = 0.0, squared = 0.0;
@@ -56,23 +56,23 @@ TEST(Alone, NoiseOfAMeanIsToldByAllOfItsRounds) {
 
 // Of its part of 8 x 8 pixels all others have halves 2 apart, noise 1 by two samples; its own
 // agree.
-TEST(Alone, LikelyNoiseIsHalfThatOfThoseAround) {
+TEST(IsolatedPoints, LikelyNoiseIsHalfThatOfThoseAround) {
   const Neighbours neighbours(window, with_one_behind());
   const Estimate estimate = estimate_of(
       [](int x, int y, std::size_t half) { return x == 20 && y == 20 ? 5.0 : 2.0 * double(half); });
   Shared shared = share(neighbours, estimate);
-  tell_alone(neighbours, window, {}, estimate, shared);
+  regularise_isolated_variance(neighbours, window, {}, estimate, shared);
   EXPECT_TRUE(neighbours.is_alone(pixel(20, 20)));
   EXPECT_EQ(shared.squared_error[pixel(20, 20)], 0.0F);
-  EXPECT_NEAR(double(shared.likely_more[pixel(20, 20)]), 0.5 * 63.0 / 64.0, 1e-6);
+  EXPECT_NEAR(double(shared.variance_prior[pixel(20, 20)]), 0.5 * 63.0 / 64.0, 1e-6);
   for (std::size_t p = 0; p < count; ++p) {
     if (p == pixel(20, 20)) continue;
-    ASSERT_EQ(shared.likely_more[p], 0.0F);
+    ASSERT_EQ(shared.variance_prior[p], 0.0F);
   }
 }
 
 // More samples where there is more noise: what is likely adds up to what is stated.
-TEST(Alone, LikelyNoiseLeavesTheSumAsItIs) {
+TEST(IsolatedPoints, LikelyNoiseLeavesTheSumAsItIs) {
   std::vector<GatherPoint> points = flat();
   for (std::size_t p = 0; p < count; ++p) points[p].position.z = -2.0F - 20.0F * float(p);
   const Neighbours neighbours(window, points);
@@ -82,37 +82,39 @@ TEST(Alone, LikelyNoiseLeavesTheSumAsItIs) {
     estimate.samples[p] = p % 3 == 0 ? 32.0F : 2.0F;
   }
   Shared shared = share(neighbours, estimate);
-  tell_alone(neighbours, window, {}, estimate, shared);
+  regularise_isolated_variance(neighbours, window, {}, estimate, shared);
   double more = 0.0, size = 0.0;
   for (std::size_t p = 0; p < count; ++p) {
-    more += double(shared.likely_more[p]), size += std::abs(double(shared.likely_more[p]));
+    more += double(shared.variance_prior[p]), size += std::abs(double(shared.variance_prior[p]));
   }
   EXPECT_GT(size, 0.0);
   EXPECT_NEAR(more / size, 0.0, 1e-5);
 }
 
-// Strays stand alone without a point of the grid and without peers. All of them have halves 0 and
-// 1, noise 1/4 by two samples; the grid has none. Four on one pixel: of 64 + 4 points these have
-// noise.
-TEST(Alone, StraysStandAloneWithoutAPointOfTheGridOrPeers) {
+// OffGrid stand alone without a point of the grid and without mirror neighbours. All of them have
+// halves 0 and 1, noise 1/4 by two samples; the grid has none. Four on one pixel: of 64 + 4 points
+// these have noise.
+TEST(IsolatedPoints, StraysStandAloneWithoutAPointOfTheGridOrPeers) {
   const Neighbours neighbours(window, flat());
   const auto there = static_cast<std::uint32_t>(pixel(20, 20));
   const std::uint32_t region = region_of(there, edge_px);
-  const std::vector<Stray> strays = {{there, no_base, region, 0.5F},
-                                     {there, there, region, 0.5F},
-                                     {there, no_base, region, 0.5F},
-                                     {there, no_base, region, 0.5F}};
-  Estimate estimate(count + strays.size(), 1, 1);
-  for (std::size_t p = 0; p < count + strays.size(); ++p) {
+  const std::vector<OffGridPoint> off_grid_points = {{there, no_base, region, 0.5F},
+                                                     {there, there, region, 0.5F},
+                                                     {there, no_base, region, 0.5F},
+                                                     {there, no_base, region, 0.5F}};
+  Estimate estimate(count + off_grid_points.size(), 1, 1);
+  for (std::size_t p = 0; p < count + off_grid_points.size(); ++p) {
     estimate.add_luminance(p, p < count ? 1.0F : 0.0F, 1.0F);
     estimate.samples[p] = 2.0F;
   }
   Shared shared = share(neighbours, estimate);
-  add_strays(strays, estimate, shared);
-  shared.few[0][count + 2] = shared.few[0][count + 3] = 0.5F;  // as peers leave it
-  tell_alone(neighbours, window, strays, estimate, shared);
-  EXPECT_NEAR(double(shared.likely_more[count]), 0.5 * (4.0 / 68.0 - 1.0) / 4.0, 1e-6);
-  for (std::size_t k = 1; k < strays.size(); ++k) EXPECT_EQ(shared.likely_more[count + k], 0.0F);
+  add_off_grid_points(off_grid_points, estimate, shared);
+  shared.inverse_dof[0][count + 2] = shared.inverse_dof[0][count + 3] =
+      0.5F;  // as mirror neighbours leave it
+  regularise_isolated_variance(neighbours, window, off_grid_points, estimate, shared);
+  EXPECT_NEAR(double(shared.variance_prior[count]), 0.5 * (4.0 / 68.0 - 1.0) / 4.0, 1e-6);
+  for (std::size_t k = 1; k < off_grid_points.size(); ++k)
+    EXPECT_EQ(shared.variance_prior[count + k], 0.0F);
 }
 
 // Relative, of points well within the picture.
@@ -131,7 +133,7 @@ double spread(const std::vector<double>& values) {
 // cancels: of a plane with noise alone, what is told of it in the mean of 100 varies over the
 // points by about a tenth of what one does (0.16). Were the signs the same for all, a part of it
 // would stay.
-TEST(Alone, NoiseIsToldByOtherSignsForOtherSamples) {
+TEST(IsolatedPoints, NoiseIsToldByOtherSignsForOtherSamples) {
   constexpr int fields = 100;
   const Neighbours neighbours(window, flat());
   std::vector<double> mean(count, 0.0);

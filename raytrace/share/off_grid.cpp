@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "raytrace/share/strays.h"
+#include "raytrace/share/off_grid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Signal over noise of strays that no point of the grid may stand for, of whose own all is kept;
-// and noise over signal of those without samples, which have nothing of their own to keep.
-constexpr float alone = 1e6F;
+// Signal over noise of off-grid points that no point of the grid may stand for, of whose own all is
+// kept; and noise over signal of those without samples, which have nothing of their own to keep.
+constexpr float unsampled_noise = 1e6F;
 
 float luminance_at(const std::vector<glm::vec3>& radiance, std::size_t point, std::size_t layers,
                    std::size_t seen) {
@@ -20,9 +20,9 @@ float luminance_at(const std::vector<glm::vec3>& radiance, std::size_t point, st
   return static_cast<float>(base::luminance(Rgb(sum)));
 }
 
-// What strays that are held to be alike say of how far they are off what stands for them: the
-// squares found, less the noise of these. Those whose noise is small against the signal count the
-// more (weights 1 / (s + q)^2, which are best for normal numbers; found in a few rounds).
+// What off-grid points that are held to be alike say of how far they are off what stands for them:
+// the squares found, less the noise of these. Those whose noise is small against the signal count
+// the more (weights 1 / (s + q)^2, which are best for normal numbers; found in a few rounds).
 class Differences {
  public:
   void add(float squared, float noise, float samples) {
@@ -45,7 +45,7 @@ class Differences {
   // Signal that noise may hide: the standard error of what is found of none.
   [[nodiscard]] float hidden() const { return static_cast<float>(hidden_); }
   // 1 / N, for Stein's term.
-  [[nodiscard]] float few(float noise) const {
+  [[nodiscard]] float inverse_dof(float noise) const {
     const double all = std::max(0.0, signal_) + double(noise);
     return known_ > 0.0 ? static_cast<float>(std::min(1.0, 1.0 / (known_ * all * all))) : 1.0F;
   }
@@ -75,101 +75,109 @@ class Differences {
 
 }  // namespace
 
-void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared& shared) {
-  if (strays.empty()) return;
+void add_off_grid_points(std::span<const OffGridPoint> off_grid_points, const Estimate& estimate,
+                         Shared& shared) {
+  if (off_grid_points.empty()) return;
   const std::size_t layers = estimate.layers, all = estimate.samples.size();
-  const std::size_t grid = all - strays.size();
+  const std::size_t grid = all - off_grid_points.size();
   const bool in_place = estimate.sum.empty();
   shared.radiance.resize(all * layers, glm::vec3(0.0F));
   shared.resize(all);
   shared.hidden.assign(all, 0.0F);
 
   std::uint32_t last = 0;
-  for (const Stray& stray : strays) last = std::max(last, stray.region);
+  for (const OffGridPoint& off_grid_point : off_grid_points)
+    last = std::max(last, off_grid_point.region);
   std::vector<Differences> regions(last + 1U);
-  std::vector<float> noise(strays.size(), 0.0F);
-  for (std::size_t k = 0; k < strays.size(); ++k) {
+  std::vector<float> noise(off_grid_points.size(), 0.0F);
+  for (std::size_t k = 0; k < off_grid_points.size(); ++k) {
     if (estimate.samples[grid + k] <= 0.0F) continue;
     noise[k] = estimate.noise(grid + k);
-    if (strays[k].base == no_base) continue;
-    const float more = estimate.mean(grid + k) -
-                       luminance_at(shared.radiance, strays[k].base, layers, estimate.image_layers);
-    regions[strays[k].region].add(more * more, noise[k], estimate.samples[grid + k]);
+    if (off_grid_points[k].base == no_base) continue;
+    const float more =
+        estimate.mean(grid + k) -
+        luminance_at(shared.radiance, off_grid_points[k].base, layers, estimate.image_layers);
+    regions[off_grid_points[k].region].add(more * more, noise[k], estimate.samples[grid + k]);
   }
   for (Differences& region : regions) region.find();
-  for (std::size_t k = 0; k < strays.size(); ++k) {
+  for (std::size_t k = 0; k < off_grid_points.size(); ++k) {
     const std::size_t point = grid + k;
-    const bool sampled = estimate.samples[point] > 0.0F, has_base = strays[k].base != no_base;
+    const bool sampled = estimate.samples[point] > 0.0F,
+               has_base = off_grid_points[k].base != no_base;
     float keep = sampled ? 1.0F : 0.0F;
     if (has_base) {
-      const Differences& region = regions[strays[k].region];
+      const Differences& region = regions[off_grid_points[k].region];
       const float s = std::max(region.signal(), region.hidden());
-      const float q = sampled ? region.noise(estimate.samples[point]) : alone * s;
+      const float q = sampled ? region.noise(estimate.samples[point]) : unsampled_noise * s;
       shared.signal[0][point] = region.signal();
       shared.hidden[point] = region.hidden();
       shared.noise[0][point] = q;
-      shared.few[0][point] = region.few(q);
-      if (sampled) keep = kept_share(s, q, region.few(q));
+      shared.inverse_dof[0][point] = region.inverse_dof(q);
+      if (sampled) keep = wiener_gain(s, q, region.inverse_dof(q));
     } else {
-      shared.signal[0][point] = alone * noise[k];
+      shared.signal[0][point] = unsampled_noise * noise[k];
       shared.noise[0][point] = noise[k];
     }
     for (std::size_t layer = 0; layer < layers; ++layer) {
       glm::vec3& value = shared.radiance[point * layers + layer];
       const glm::vec3 sum = in_place ? value : estimate.sum[point * layers + layer];
-      value = has_base ? shared.radiance[strays[k].base * layers + layer] : glm::vec3(0.0F);
+      value =
+          has_base ? shared.radiance[off_grid_points[k].base * layers + layer] : glm::vec3(0.0F);
       if (sampled) value += keep * (sum / estimate.samples[point] - value);
     }
     shared.squared_error[point] = static_cast<float>(shared.squared_error_with(point, 1.0));
   }
 }
 
-void share_among_peers(const Peers& peers, const Estimate& estimate, Shared& shared) {
-  const std::size_t strays = peers.strays.size(), grid = estimate.samples.size() - strays;
+void share_among_mirror_neighbours(const MirrorNeighbourhood& mirror_neighbours,
+                                   const Estimate& estimate, Shared& shared) {
+  const std::size_t off_grid_points = mirror_neighbours.off_grid_points.size(),
+                    grid = estimate.samples.size() - off_grid_points;
   const auto each = [&](std::size_t k, const auto& visit) {
-    peers.each(k, [&](std::size_t peer) {
-      if (estimate.samples[grid + peer] > 0.0F) visit(peer);
+    mirror_neighbours.each(k, [&](std::size_t mirror_neighbour) {
+      if (estimate.samples[grid + mirror_neighbour] > 0.0F) visit(mirror_neighbour);
     });
   };
-  std::vector<float> keep(strays, 1.0F);
-  base::parallel_chunks(strays, 256, [&](std::size_t begin, std::size_t end) {
+  std::vector<float> keep(off_grid_points, 1.0F);
+  base::parallel_chunks(off_grid_points, 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       float count = 0.0F, all = 0.0F, of_sample = 0.0F;
       double off = 0.0, squared = 0.0;  // from its own
-      each(k, [&](std::size_t peer) {
+      each(k, [&](std::size_t mirror_neighbour) {
         const double from_own =
-            double(estimate.mean(grid + peer)) - double(estimate.mean(grid + k));
-        const float noise = estimate.noise(grid + peer);
+            double(estimate.mean(grid + mirror_neighbour)) - double(estimate.mean(grid + k));
+        const float noise = estimate.noise(grid + mirror_neighbour);
         count += 1.0F, off += from_own, squared += from_own * from_own, all += noise;
-        of_sample += noise * estimate.samples[grid + peer];
+        of_sample += noise * estimate.samples[grid + mirror_neighbour];
       });
       if (count < 2.0F) continue;
       all /= count, of_sample /= count;
       const double n = double(count), energy = std::max(0.0, squared - off * off / n) / (n - 1.0);
       const std::size_t point = grid + k;
       const float samples = estimate.samples[point], s = static_cast<float>(energy) - all;
-      const float q = samples > 0.0F ? of_sample / samples : alone * std::max(0.0F, s);
+      const float q = samples > 0.0F ? of_sample / samples : unsampled_noise * std::max(0.0F, s);
       shared.signal[0][point] = s;
       shared.noise[0][point] = q;
-      shared.few[0][point] = 1.0F / count;
+      shared.inverse_dof[0][point] = 1.0F / count;
       shared.rest[point] = all / count;
       shared.squared_error[point] = static_cast<float>(shared.squared_error_with(point, 1.0));
-      keep[k] = samples > 0.0F ? kept_share(s, q, 1.0F / count) : 0.0F;
+      keep[k] = samples > 0.0F ? wiener_gain(s, q, 1.0F / count) : 0.0F;
     }
   });
   // A layer after the other: of all of them there may be as much as of the whole picture.
-  std::vector<glm::vec3> own(strays);
+  std::vector<glm::vec3> own(off_grid_points);
   for (std::size_t layer = 0; layer < shared.layers; ++layer) {
     const auto value = [&](std::size_t k) -> glm::vec3& {
       return shared.radiance[(grid + k) * shared.layers + layer];
     };
-    for (std::size_t k = 0; k < strays; ++k) own[k] = value(k);
-    base::parallel_chunks(strays, 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = 0; k < off_grid_points; ++k) own[k] = value(k);
+    base::parallel_chunks(off_grid_points, 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         if (keep[k] >= 1.0F) continue;
         glm::vec3 mean(0.0F);
         float count = 0.0F;
-        each(k, [&](std::size_t peer) { mean += own[peer], count += 1.0F; });
+        each(k,
+             [&](std::size_t mirror_neighbour) { mean += own[mirror_neighbour], count += 1.0F; });
         if (count > 0.0F) value(k) = mean / count + keep[k] * (own[k] - mean / count);
       }
     });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gather points off the grid, on estimates written down by hand.
-#include "raytrace/share/strays.h"
+#include "raytrace/share/off_grid.h"
 
 #include <gtest/gtest.h>
 
@@ -12,70 +12,71 @@
 namespace earthshine::raytrace {
 namespace {
 
-// One point of a grid, of value 10, and strays of two samples each.
+// One point of a grid, of value 10, and off-grid points of two samples each.
 struct Written {
-  std::vector<Stray> strays;
+  std::vector<OffGridPoint> off_grid_points;
   Estimate estimate;
   Shared shared;
 
   explicit Written(std::size_t count)
-      : strays(count, Stray{0, 0, 0, 0.5F}), estimate(1 + count, 1, 1) {
+      : off_grid_points(count, OffGridPoint{0, 0, 0, 0.5F}), estimate(1 + count, 1, 1) {
     shared.layers = 1;
     shared.radiance = {glm::vec3(10.0F)};
     shared.resize(1);
   }
   // Means of the halves of so many samples.
-  void sample(std::size_t stray, double first, double second, double samples = 2.0) {
+  void sample(std::size_t off_grid_point, double first, double second, double samples = 2.0) {
     first *= samples / 2.0, second *= samples / 2.0;
-    estimate.clear(1 + stray);
-    estimate.add_luminance(1 + stray, static_cast<float>(first), static_cast<float>(second));
-    estimate.sum[1 + stray] = glm::vec3(static_cast<float>(first + second));
-    estimate.samples[1 + stray] = static_cast<float>(samples);
+    estimate.clear(1 + off_grid_point);
+    estimate.add_luminance(1 + off_grid_point, static_cast<float>(first),
+                           static_cast<float>(second));
+    estimate.sum[1 + off_grid_point] = glm::vec3(static_cast<float>(first + second));
+    estimate.samples[1 + off_grid_point] = static_cast<float>(samples);
   }
-  [[nodiscard]] double value(std::size_t stray) const {
-    return double(shared.radiance[1 + stray].g);
+  [[nodiscard]] double value(std::size_t off_grid_point) const {
+    return double(shared.radiance[1 + off_grid_point].g);
   }
 };
 
-TEST(Strays, WithoutSamplesTheyTakeWhatTheirSurfaceSays) {
+TEST(OffGrid, WithoutSamplesTheyTakeWhatTheirSurfaceSays) {
   Written written(1);
-  add_strays(written.strays, written.estimate, written.shared);
+  add_off_grid_points(written.off_grid_points, written.estimate, written.shared);
   EXPECT_EQ(written.value(0), 10.0);
 }
 
-TEST(Strays, WithoutSamplesTheyStateWhatTheOthersAreOffBy) {
+TEST(OffGrid, WithoutSamplesTheyStateWhatTheOthersAreOffBy) {
   // The others are 2 off what their surface says, without noise: mean square 4.
   Written written(9);
   for (std::size_t k = 1; k < 9; ++k) written.sample(k, 12.0, 12.0);
-  add_strays(written.strays, written.estimate, written.shared);
+  add_off_grid_points(written.off_grid_points, written.estimate, written.shared);
   EXPECT_NEAR(double(written.shared.squared_error[1]), 4.0, 1e-5);
   for (std::size_t k = 1; k < 9; ++k) EXPECT_EQ(written.shared.squared_error[1 + k], 0.0F);
 }
 
-TEST(Strays, WithoutASurfaceBesideThemTheyKeepTheirOwn) {
+TEST(OffGrid, WithoutASurfaceBesideThemTheyKeepTheirOwn) {
   Written written(2);
-  written.strays[0].base = no_base;
+  written.off_grid_points[0].base = no_base;
   written.sample(0, 3.0, 5.0);
-  add_strays(written.strays, written.estimate, written.shared);
+  add_off_grid_points(written.off_grid_points, written.estimate, written.shared);
   EXPECT_DOUBLE_EQ(written.value(0), 4.0);
   EXPECT_NEAR(double(written.shared.squared_error[1]), 1.0, 1e-4);  // ((3 - 5) / 2)^2
 }
 
-TEST(Strays, WhatIsNoNoiseIsKeptWhole) {
+TEST(OffGrid, WhatIsNoNoiseIsKeptWhole) {
   Written written(8);
   for (std::size_t k = 0; k < 8; ++k) written.sample(k, 4.0 + double(k), 4.0 + double(k));
-  add_strays(written.strays, written.estimate, written.shared);
+  add_off_grid_points(written.off_grid_points, written.estimate, written.shared);
   for (std::size_t k = 0; k < 8; ++k) EXPECT_NEAR(written.value(k), 4.0 + double(k), 1e-5);
 }
 
-TEST(Strays, WhatNoiseHidesIsNotStatedAsNone) {
+TEST(OffGrid, WhatNoiseHidesIsNotStatedAsNone) {
   // Halves of 10 - 3 and 10 + 3, whose mean is what the surface says: the squares found, 0, less
   // the noise q = 9 are below zero. Nothing of their own is kept; the signal may be as much as the
   // standard error of a mean of nine squares, q sqrt(2 / 9). Four times the samples have a quarter
   // of that.
   Written written(9);
   for (std::size_t k = 0; k < 9; ++k) written.sample(k, 7.0, 13.0);
-  add_strays(written.strays, written.estimate, written.shared);
+  add_off_grid_points(written.off_grid_points, written.estimate, written.shared);
   const double hidden = 9.0 * std::sqrt(2.0 / 9.0);
   for (std::size_t k = 0; k < 9; ++k) {
     EXPECT_EQ(written.value(k), 10.0);
@@ -84,7 +85,7 @@ TEST(Strays, WhatNoiseHidesIsNotStatedAsNone) {
   }
 }
 
-TEST(Strays, TheirErrorIsAsStated) {
+TEST(OffGrid, TheirErrorIsAsStated) {
   // True differences of variance s from what the surface says, means of two samples of noise q:
   // keeping c of what is found leaves (1 - c)^2 s + c^2 q in the mean. Means of squares of normal
   // numbers scatter by sqrt(2 / count) of themselves: what is left so, and of what is stated q and
@@ -103,14 +104,14 @@ TEST(Strays, TheirErrorIsAsStated) {
       const double noise = std::sqrt(2.0 * q);
       written.sample(k, truth[k] + noise * normal(), truth[k] + noise * normal());
     }
-    add_strays(written.strays, written.estimate, written.shared);
+    add_off_grid_points(written.off_grid_points, written.estimate, written.shared);
     double found = 0.0, stated = 0.0;
     for (std::size_t k = 0; k < count; ++k) {
       found += std::pow(written.value(k) - truth[k], 2) / count;
       stated += double(written.shared.squared_error[1 + k]) / count;
     }
     const double c =
-        double(kept_share(static_cast<float>(s), static_cast<float>(q), 1.0F / float(count)));
+        double(wiener_gain(static_cast<float>(s), static_cast<float>(q), 1.0F / float(count)));
     const double left = (1.0 - c) * (1.0 - c) * s + c * c * q;
     const double error = left + (1.0 - c) * (1.0 - c) * (s + 2.0 * q) + c * c * q;
     EXPECT_NEAR(stated, found, 4.0 * std::sqrt(2.0 / count) * error) << q;
@@ -118,11 +119,12 @@ TEST(Strays, TheirErrorIsAsStated) {
   }
 }
 
-TEST(Strays, MoreSamplesAreStatedAsWhatTheyAre) {
-  // A sample has the variance v = 2 wherever it is. A tenth of the strays have 200 of them, the
-  // others 2: the noise of their means is v / 200 and v / 2, and what keeping c of a difference of
-  // variance s leaves of each kind is (1 - c)^2 s + c^2 q by its own q. Means over the strays of a
-  // kind scatter as in the law before this one; v is found from all of them.
+TEST(OffGrid, MoreSamplesAreStatedAsWhatTheyAre) {
+  // A sample has the variance v = 2 wherever it is. A tenth of the off-grid points have 200 of
+  // them, the others 2: the noise of their means is v / 200 and v / 2, and what keeping c of a
+  // difference of variance s leaves of each kind is (1 - c)^2 s + c^2 q by its own q. Means over
+  // the off-grid points of a kind scatter as in the law before this one; v is found from all of
+  // them.
   constexpr std::size_t count = 8000;
   constexpr double s = 1.0, v = 2.0;
   Written written(count);
@@ -137,7 +139,7 @@ TEST(Strays, MoreSamplesAreStatedAsWhatTheyAre) {
     const double noise = std::sqrt(v / (samples(k) / 2.0));
     written.sample(k, truth[k] + noise * normal(), truth[k] + noise * normal(), samples(k));
   }
-  add_strays(written.strays, written.estimate, written.shared);
+  add_off_grid_points(written.off_grid_points, written.estimate, written.shared);
   for (const std::size_t kind : {std::size_t{0}, std::size_t{1}}) {
     double found = 0.0, stated = 0.0, of = 0.0;
     for (std::size_t k = kind; k < count; k += kind == 0 ? 10 : 1) {
@@ -148,7 +150,7 @@ TEST(Strays, MoreSamplesAreStatedAsWhatTheyAre) {
     }
     const double q = v / samples(kind);
     const double c =
-        double(kept_share(static_cast<float>(s), static_cast<float>(q), 1.0F / float(count)));
+        double(wiener_gain(static_cast<float>(s), static_cast<float>(q), 1.0F / float(count)));
     const double left = (1.0 - c) * (1.0 - c) * s + c * c * q;
     // q is found to sqrt(2 / count) of itself, s + q of the others likewise.
     const double error = left * std::sqrt(2.0 / of) +
@@ -158,22 +160,24 @@ TEST(Strays, MoreSamplesAreStatedAsWhatTheyAre) {
   }
 }
 
-// A row of strays, one a pixel, each a peer of those up to three away.
+// A row of off-grid points, one a pixel, each a mirror neighbour of those up to three away.
 class Row {
  public:
   explicit Row(std::size_t count) : written(count), masks_(count, 0U) {
     for (std::size_t k = 0; k < count; ++k) {
-      written.strays[k] = {static_cast<std::uint32_t>(k), no_base, 0, 1.0F};
+      written.off_grid_points[k] = {static_cast<std::uint32_t>(k), no_base, 0, 1.0F};
       first_.push_back(static_cast<std::uint32_t>(k));
       for (std::size_t q = k < 3 ? 0 : k - 3; q <= std::min(count - 1, k + 3); ++q) {
-        masks_[k] |= std::uint64_t{1} << (24 + q - k);  // the middle one of 7 x 7 is the stray's
+        masks_[k] |= std::uint64_t{1}
+                     << (24 + q - k);  // the middle one of 7 x 7 is the off-grid point's
       }
     }
     first_.push_back(static_cast<std::uint32_t>(count));
   }
   void share() {
-    add_strays(written.strays, written.estimate, written.shared);
-    share_among_peers({written.strays, first_, masks_, 1000}, written.estimate, written.shared);
+    add_off_grid_points(written.off_grid_points, written.estimate, written.shared);
+    share_among_mirror_neighbours({written.off_grid_points, first_, masks_, 1000}, written.estimate,
+                                  written.shared);
   }
   Written written;
 
@@ -182,14 +186,14 @@ class Row {
   std::vector<std::uint64_t> masks_;
 };
 
-TEST(Peers, WhatIsNoNoiseIsKeptWhole) {
+TEST(MirrorNeighbourhood, WhatIsNoNoiseIsKeptWhole) {
   Row row(20);
   for (std::size_t k = 0; k < 20; ++k) row.written.sample(k, 4.0 + double(k), 4.0 + double(k));
   row.share();
   for (std::size_t k = 0; k < 20; ++k) EXPECT_NEAR(row.written.value(k), 4.0 + double(k), 1e-5);
 }
 
-TEST(Peers, NoiseOfOneSurfaceIsTheirMeans) {
+TEST(MirrorNeighbourhood, NoiseOfOneSurfaceIsTheirMeans) {
   // Means of two samples of noise 2 q: seven of them leave q / 7 of q where nothing of their own is
   // kept. What is kept by chance, where seven pairs happen to differ by little, is stated too.
   constexpr std::size_t count = 4000;
@@ -214,11 +218,11 @@ TEST(Peers, NoiseOfOneSurfaceIsTheirMeans) {
   EXPECT_LT(stated, q / 2.0);
 }
 
-TEST(Peers, MoreSamplesAreStatedAsWhatTheyAre) {
-  // A sample has the variance v = 2; every tenth stray has 200, its six peers 2 each. They differ
-  // by far more than that, so that all of their own is kept: what is stated is v / 200, and the
-  // noise of the mean of all seven, (6 v / 2 + v / 200) / 7^2. Both are found from the squares of
-  // six normal numbers at each of 400 places.
+TEST(MirrorNeighbourhood, MoreSamplesAreStatedAsWhatTheyAre) {
+  // A sample has the variance v = 2; every tenth off-grid point has 200, its six mirror neighbours
+  // 2 each. They differ by far more than that, so that all of their own is kept: what is stated is
+  // v / 200, and the noise of the mean of all seven, (6 v / 2 + v / 200) / 7^2. Both are found from
+  // the squares of six normal numbers at each of 400 places.
   constexpr std::size_t count = 4000;
   constexpr double v = 2.0;
   Row row(count);
@@ -240,7 +244,7 @@ TEST(Peers, MoreSamplesAreStatedAsWhatTheyAre) {
   EXPECT_NEAR(stated, expected, 4.0 * expected * std::sqrt(2.0 / (6.0 * count / 10.0)));
 }
 
-TEST(Peers, OneThatWasNotSampledIsTheMeanOfThoseThatWere) {
+TEST(MirrorNeighbourhood, OneThatWasNotSampledIsTheMeanOfThoseThatWere) {
   Row row(7);
   for (const std::size_t k : {0U, 1U, 2U, 4U, 5U, 6U}) row.written.sample(k, 3.0, 3.0);
   row.share();

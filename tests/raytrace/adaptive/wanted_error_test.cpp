@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "raytrace/passes/rounds.h"
+#include "raytrace/adaptive/allocator.h"
 #include "raytrace/render.h"
 #include "tests/support/scene_builder.h"
 
@@ -32,18 +32,17 @@ TEST(WantedError, RoundsThatChoseWhereToSampleStateLessThanIsWanted) {
   camera.fov_deg = 60.0;
   RenderOptions options;
   options.columns = options.rows = 48;
-  options.shared.on = true;
   const auto stated = [&](double wanted) {
     options.error = wanted;
     const ErrorSums sums = add_up(render(prepared, solution, camera, options).error);
-    return sums.doubt * std::sqrt(sums.squared_error());
+    return sums.confidence_factor * std::sqrt(sums.squared_error());
   };
-  const double first_look = stated(1.0);
+  const double initial = stated(1.0);
   // The witness may ask for a few samples more or less.
-  EXPECT_NEAR(stated(1.01 * first_look), first_look, 0.02 * first_look);
+  EXPECT_NEAR(stated(1.01 * initial), initial, 0.02 * initial);
   for (const double wanted : {0.95, 0.85, 0.7, 0.5}) {
-    const double error = wanted * first_look;
-    EXPECT_LE(stated(error), sure_share(error) * error);
+    const double error = wanted * initial;
+    EXPECT_LE(stated(error), stop_fraction(error) * error);
   }
 }
 

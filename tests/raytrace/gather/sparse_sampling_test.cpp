@@ -10,9 +10,9 @@ namespace {
 
 TEST(QuickLook, SparesWhatIsSeenInMirrors) {
   // A furnace, rho 0.8 and M = 0.2, of which one wall is a mirror: radiance 1 / pi in every pixel.
-  // What a mirror shows is all of strays, of which the few that are sampled stand for the others:
-  // each has four of them among 7 x 7 pixels, so that about one in six is. Of the first look there
-  // are at most a quarter of the rays, then.
+  // What a mirror shows is all of off-grid points, of which the few that are sampled stand for the
+  // others: each has four of them among 7 x 7 pixels, so that about one in six is. Of the first
+  // look there are at most a quarter of the rays, then.
   tests::SceneBuilder builder;
   const std::uint32_t grey = builder.material(tests::grey(0.8, 0.2));
   scenes::Material silver = tests::grey(0.0);
@@ -28,7 +28,6 @@ TEST(QuickLook, SparesWhatIsSeenInMirrors) {
   RenderOptions options;
   options.columns = 96;
   options.rows = 80;
-  options.shared.on = true;
   options.error = 1.0;
   const auto gathered = [&](bool at_once) {
     options.stop = [at_once] { return at_once; };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How rounds of samples go on towards a wanted error, told by sums that are made up.
-#include "raytrace/passes/rounds.h"
+#include "raytrace/adaptive/allocator.h"
 
 #include <gtest/gtest.h>
 
@@ -33,22 +33,22 @@ PixelSums surprised() {
 // The pixel that stands out is half of the squared error, and twelve more samples of it, a 20 000th
 // of all, are all that a round would ask for: at that pace it would take a hundred rounds to double
 // the samples.
-TEST(Rounds, NoneCostsNextToNothing) {
+TEST(Allocator, NoneCostsNextToNothing) {
   const PixelSums sums = surprised();
   SamplePlanner planner(sums, nullptr, {});
   const double so_far = spent(sums, nullptr, {});
   EXPECT_LT(planner.plan(0.7 * planner.squared_error(), no_limit).cost, 1e-3 * so_far);
-  Rounds rounds(0.001);
+  Allocator rounds = Allocator::to_error(0.001);
   const auto plan = rounds.next(planner, so_far, no_limit);
   ASSERT_TRUE(plan.has_value());
   EXPECT_GT(plan->cost, 0.01 * so_far);
 }
 
-TEST(Rounds, NoneCostsMoreThanCanBeAfforded) {
+TEST(Allocator, NoneCostsMoreThanCanBeAfforded) {
   const PixelSums sums = surprised();
   SamplePlanner planner(sums, nullptr, {});
   const double so_far = spent(sums, nullptr, {});
-  Rounds rounds(0.001);
+  Allocator rounds = Allocator::to_error(0.001);
   const auto plan = rounds.next(planner, so_far, 1e-3 * so_far);
   ASSERT_TRUE(plan.has_value());
   EXPECT_LE(plan->cost, 1e-3 * so_far);
@@ -73,13 +73,14 @@ PixelSums alike() {
 // A quarter of the squared error takes four times the samples, by 1 / N and by the plan; a
 // sixteenth four times those, of which a plan, which gives a point four times its samples at most,
 // knows the first step.
-TEST(Rounds, GrowthIsThatOfThePlanAndBeyondItOfTheSquare) {
+TEST(Allocator, GrowthIsThatOfThePlanAndBeyondItOfTheSquare) {
   const PixelSums sums = alike();
   SamplePlanner planner(sums, nullptr, {});
   const double so_far = spent(sums, nullptr, {});
   const double half = 0.5 * std::sqrt(planner.squared_error());
   const auto growth = [&](double aimed) {
-    return Rounds(planner.doubt() * aimed / tuning::planned_share).growth(planner, so_far);
+    return Allocator::to_error(planner.confidence_factor() * aimed / tuning::planned_share)
+        .growth(planner, so_far);
   };
   EXPECT_NEAR(growth(half), 4.0, 0.02);
   EXPECT_NEAR(growth(0.5 * half), 16.0, 0.1);
@@ -104,14 +105,14 @@ PixelSums off_by(double error) {
 
 // True errors of coarse pictures are at most 1.06 of what is stated, those of fine ones up to 1.1:
 // of 5 % a statement of 4.6 is enough and one of 4.8 is not, of 3 % one of 2.65 and not one
-// of 2.76. A first look, which has not chosen where to look, is taken at its word. Each of 256
+// of 2.76. Initial samples, which follow no statement, are taken at their word. Each of 256
 // pixels is told by one difference d, all alike here: the sum of 2/3 d^4 of them is 2/3 / 256 of
-// the square of the sum of d^2, and 1.2816 of its root goes to the doubt.
-const double doubt_of_256 = std::sqrt(1.0 + 1.2816 * std::sqrt(2.0 / 3.0 / 256.0));
-TEST(Rounds, GoOnUntilTheErrorIsSure) {
+// the square of the sum of d^2, and 1.2816 of its root goes to the confidence factor.
+const double factor_of_256 = std::sqrt(1.0 + 1.2816 * std::sqrt(2.0 / 3.0 / 256.0));
+TEST(Allocator, GoOnUntilTheErrorIsSure) {
   const auto goes_on = [](double wanted, double first, double second) {
-    Rounds rounds(wanted);
-    for (const double error : {first / doubt_of_256, second / doubt_of_256}) {
+    Allocator rounds = Allocator::to_error(wanted);
+    for (const double error : {first / factor_of_256, second / factor_of_256}) {
       const PixelSums sums = off_by(error);
       SamplePlanner planner(sums, nullptr, {});
       // Half a sample more of n takes n^(-3/2) / 4 off 1 / sqrt(n).
@@ -130,14 +131,15 @@ TEST(Rounds, GoOnUntilTheErrorIsSure) {
 
 // Each round takes a sharing and a look, too: one goes to a quarter of the squared error, for three
 // times the samples so far, and no further, since what few samples say of many more is rough.
-TEST(Rounds, OneGoesToAQuarterOfTheSquaredError) {
+TEST(Allocator, OneGoesToAQuarterOfTheSquaredError) {
   const PixelSums sums = alike();
   SamplePlanner planner(sums, nullptr, {});
   const double so_far = spent(sums, nullptr, {});
   const double half = 0.5 * std::sqrt(planner.squared_error());
   for (const double aimed : {half, 0.1 * half}) {
     const auto plan =
-        Rounds(planner.doubt() * aimed / tuning::planned_share).next(planner, so_far, no_limit);
+        Allocator::to_error(planner.confidence_factor() * aimed / tuning::planned_share)
+            .next(planner, so_far, no_limit);
     ASSERT_TRUE(plan.has_value());
     EXPECT_NEAR(plan->cost, 3.0 * so_far, 0.1 * so_far);
   }
@@ -145,12 +147,13 @@ TEST(Rounds, OneGoesToAQuarterOfTheSquaredError) {
 
 // What is lacking may outweigh, by chance, all that there is: a mean of less than nothing has not
 // reached its error, whatever was asked for, but is off by 200 %.
-TEST(Rounds, APictureThatNoiseLeavesNothingOfGoesOn) {
+TEST(Allocator, APictureThatNoiseLeavesNothingOfGoesOn) {
   PixelSums sums = surprised();
   for (glm::vec3& light : sums.radiance) light = -light;
   SamplePlanner planner(sums, nullptr, {});
   EXPECT_NEAR(planner.squared_error(), 4.0, 1e-12);
-  EXPECT_TRUE(Rounds(1.0).next(planner, spent(sums, nullptr, {}), no_limit).has_value());
+  EXPECT_TRUE(
+      Allocator::to_error(1.0).next(planner, spent(sums, nullptr, {}), no_limit).has_value());
   // Nor where all that it is off by is in one bright pixel, which counts whole.
   sums.radiance[0] = glm::vec3(1e4F * 4.0F);
   sums.radiance[1] = glm::vec3(-1e5F * 1024.0F);
@@ -159,7 +162,7 @@ TEST(Rounds, APictureThatNoiseLeavesNothingOfGoesOn) {
 }
 
 // All light comes straight from a source, up to the rounding of sums: nothing could be wrong.
-TEST(Rounds, RoundingOfASourceIsNoLightThatIsMissing) {
+TEST(Allocator, RoundingOfASourceIsNoLightThatIsMissing) {
   PixelSums sums = surprised();
   for (std::size_t p = 0; p < sums.samples.size(); ++p) {
     sums.source[p].luminance = double(sums.radiance[p].x) * (1.0 + 1e-7);
@@ -167,47 +170,63 @@ TEST(Rounds, RoundingOfASourceIsNoLightThatIsMissing) {
   }
   SamplePlanner planner(sums, nullptr, {});
   EXPECT_EQ(planner.squared_error(), 0.0);
-  EXPECT_FALSE(Rounds(0.05).next(planner, spent(sums, nullptr, {}), no_limit).has_value());
+  EXPECT_FALSE(
+      Allocator::to_error(0.05).next(planner, spent(sums, nullptr, {}), no_limit).has_value());
 }
 
-// A full first look at 4 % and less, half of it at more, and where a limit alone ends the picture.
-TEST(Rounds, AFirstLookIsAsCoarseAsThePicture) {
+// All initial samples at 4 % and less, half of it at more, and where a limit alone ends the
+// picture.
+TEST(Allocator, InitialSamplingIsAsCoarseAsThePicture) {
   constexpr std::size_t points = 256 * 256;
-  const FirstLook full = first_look(0.04, points);
+  const InitialSampling full = Allocator::to_error(0.04).initial(points);
   for (const double wanted : {0.041, 0.5, 0.0}) {
-    const FirstLook half = first_look(wanted, points);
+    const InitialSampling half = Allocator::to_error(wanted).initial(points);
     EXPECT_EQ(2 * half.gather_rays, full.gather_rays);
     EXPECT_EQ(2 * half.paths, full.paths);
   }
-  EXPECT_EQ(first_look(0.01, points).paths, full.paths);
+  EXPECT_EQ(Allocator::to_error(0.01).initial(points).paths, full.paths);
 }
 
 // At half of the points where a picture is coarse, as long as their paths are 2^16.
-TEST(Rounds, AFirstLookAtEverySecondPointIsOfManyPointsAlone) {
-  EXPECT_TRUE(first_look(0.05, 1U << 16U).every_second);
-  EXPECT_FALSE(first_look(0.05, (1U << 16U) - 1).every_second);
-  EXPECT_FALSE(first_look(0.04, 1U << 20U).every_second);
+TEST(Allocator, InitialSamplingAtEverySecondPointIsOfManyPointsAlone) {
+  EXPECT_TRUE(Allocator::to_error(0.05).initial(1U << 16U).every_second);
+  EXPECT_FALSE(Allocator::to_error(0.05).initial((1U << 16U) - 1).every_second);
+  EXPECT_FALSE(Allocator::to_error(0.04).initial(1U << 20U).every_second);
 }
 
 // Light that one of ten thousand paths finds, of 2^15 some find but with a chance of exp(-3.3) = 4
 // %, however few the points.
-TEST(Rounds, AFirstLookOfFewPointsIsOfManyPaths) {
+TEST(Allocator, InitialSamplingOfFewPointsIsOfManyPaths) {
   for (const std::size_t points : {std::size_t{1}, std::size_t{256}, std::size_t{5000}}) {
-    EXPECT_GT(first_look(0.5, points).paths * points, 32768U);
+    EXPECT_GT(Allocator::to_error(0.5).initial(points).paths * points, 32768U);
   }
 }
 
+// Fixed numbers are the same at edges and elsewhere, and no rounds follow.
+TEST(Allocator, FixedNumbersHaveNoRounds) {
+  Allocator fixed = Allocator::fixed(64, 16);
+  const InitialSampling initial = fixed.initial(5);
+  EXPECT_EQ(initial.field(), (std::array{64U, 32U, 32U}));
+  EXPECT_EQ(initial.camera, 16);
+  EXPECT_EQ(initial.interior, 16);
+  EXPECT_FALSE(initial.every_second);
+  EXPECT_FALSE(fixed.has_rounds());
+  const PixelSums sums = surprised();
+  SamplePlanner planner(sums, nullptr, {});
+  EXPECT_FALSE(fixed.next(planner, spent(sums, nullptr, {}), no_limit).has_value());
+}
+
 // Of samples that know all noise, 1024 times as many leave 1/32 of it.
-TEST(Rounds, AnErrorThatWillNotFallIsHopeless) {
-  EXPECT_FALSE(Rounds::is_hopeless({{1.0, 0.1}}));
-  EXPECT_TRUE(Rounds::is_hopeless({{1.0, 0.1}, {1024.0, 0.06}}));
-  EXPECT_FALSE(Rounds::is_hopeless({{1.0, 0.1}, {1000.0, 0.1}}));
-  EXPECT_FALSE(Rounds::is_hopeless({{1.0, 0.1}, {1024.0, 0.05}}));
+TEST(Allocator, AnErrorThatWillNotFallIsHopeless) {
+  EXPECT_FALSE(Allocator::is_hopeless({{1.0, 0.1}}));
+  EXPECT_TRUE(Allocator::is_hopeless({{1.0, 0.1}, {1024.0, 0.06}}));
+  EXPECT_FALSE(Allocator::is_hopeless({{1.0, 0.1}, {1000.0, 0.1}}));
+  EXPECT_FALSE(Allocator::is_hopeless({{1.0, 0.1}, {1024.0, 0.05}}));
 }
 
 // What the first look missed counts from where it was found.
-TEST(Rounds, ASurpriseIsNotHopeless) {
-  EXPECT_FALSE(Rounds::is_hopeless({{1.0, 0.1}, {4.0, 0.8}, {4096.0, 0.3}}));
+TEST(Allocator, ASurpriseIsNotHopeless) {
+  EXPECT_FALSE(Allocator::is_hopeless({{1.0, 0.1}, {4.0, 0.8}, {4096.0, 0.3}}));
 }
 
 }  // namespace

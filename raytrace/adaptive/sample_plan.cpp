@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "raytrace/passes/sample_plan.h"
+#include "raytrace/adaptive/sample_plan.h"
 
 #include <algorithm>
 #include <bit>
@@ -80,36 +80,36 @@ SamplePlanner::SamplePlanner(const PixelSums& sums, const GatherField* field,
     : sums_(sums),
       field_(field),
       costs_(costs),
-      stated_(state_error(sums, field, sums.window)),
+      stated_(state_error(sums, field)),
       whole_(add_up(stated_)) {}
 
-void SamplePlanner::look() {
-  if (looked_ || whole_.yardstick <= 0.0) return;
-  looked_ = true;
-  const double scale =
-      1.0 / (static_cast<double>(whole_.pixels) * whole_.yardstick * whole_.yardstick);
+void SamplePlanner::find_gains() {
+  if (has_gains_ || whole_.reference_luminance <= 0.0) return;
+  has_gains_ = true;
+  const double scale = 1.0 / (static_cast<double>(whole_.pixels) * whole_.reference_luminance *
+                              whole_.reference_luminance);
   std::size_t items = stated_.luminance.size();
   for (const Gathered kind : {Gathered::Solution, Gathered::Residual, Gathered::Lobe}) {
     if (field_ != nullptr && field_->gathers(kind)) items += field_->points().size();
   }
   gains_ = std::make_unique_for_overwrite<Gain[]>(items);
-  if (field_ != nullptr) look_at_field(scale);
-  look_at_pixels(scale);
+  if (field_ != nullptr) find_field_gains(scale);
+  find_pixel_gains(scale);
 }
 
-template <class Look>
-void SamplePlanner::look_at(std::size_t count, const Look& look) {
+template <class Fill>
+void SamplePlanner::append_gains(std::size_t count, const Fill& fill) {
   Gain* const gains = &gains_[gain_count_];
   gain_count_ += count;
   base::parallel_chunks(count, items_at_once, [&](std::size_t begin, std::size_t end) {
-    look(begin, end, gains + begin);
+    fill(begin, end, gains + begin);
     for (std::size_t k = begin; k < end; ++k) gains[k].find_prices();
   });
 }
 
 // Points that stand alone are told by likely noise; of what more samples take off it a plan counts
 // on no more than they state themselves.
-void SamplePlanner::look_at_field(double scale) {
+void SamplePlanner::find_field_gains(double scale) {
   const Window& window = sums_.window;
   const double pixels = field_->step() * field_->step();  // that read a point
   for (std::size_t k = 0; k < gathered_kinds; ++k) {
@@ -138,12 +138,12 @@ void SamplePlanner::look_at_field(double scale) {
               Gain::none,
               Gain::none};
     };
-    look_at(field_->points().size(), [&](std::size_t begin, std::size_t end, Gain* gain) {
+    append_gains(field_->points().size(), [&](std::size_t begin, std::size_t end, Gain* gain) {
       std::array<float, items_at_once> two, four;
       shared.squared_errors_with(2.0, begin, end, two.data());
       shared.squared_errors_with(4.0, begin, end, four.data());
       for (std::size_t at = 0; at < end - begin; ++at) {
-        const double more = double(shared.likely_more[begin + at]);
+        const double more = double(shared.variance_prior[begin + at]);
         gain[at] = gain_of(begin + at, double(shared.squared_error[begin + at]) + more,
                            double(two[at]) + more / 2.0, double(four[at]) + more / 4.0);
       }
@@ -155,7 +155,7 @@ void SamplePlanner::look_at_field(double scale) {
 // covers less than one of n is told by the noisiest of the pixels around, and by what they differ
 // by: samples of a pixel may agree for want of the one beyond an edge. What the halves of pixels
 // with as many samples differ by tells how much less these scatter than if they were independent.
-void SamplePlanner::look_at_pixels(double scale) {
+void SamplePlanner::find_pixel_gains(double scale) {
   const Window& window = sums_.window;
   std::vector<double> variance(stated_.luminance.size());  // of one sample, weighted
   std::vector<double> mean(variance.size());
@@ -204,7 +204,7 @@ void SamplePlanner::look_at_pixels(double scale) {
             Gain::none,
             Gain::none};
   };
-  look_at(variance.size(), [&](std::size_t begin, std::size_t end, Gain* gain) {
+  append_gains(variance.size(), [&](std::size_t begin, std::size_t end, Gain* gain) {
     for (std::size_t p = begin; p < end; ++p) *gain++ = gain_of(p);
   });
 }
@@ -235,7 +235,7 @@ SamplePlanner::Outcome SamplePlanner::outcome(std::span<const Gain> gains, doubl
 }
 
 SamplePlan SamplePlanner::plan(double wanted, double most_cost) {
-  look();
+  find_gains();
   const double now = squared_error();
   SamplePlan plan;
   plan.squared_error = now;
