@@ -47,7 +47,7 @@ std::string at(const ViewingConfiguration& way, double position_deg) {
 }
 
 std::string arcs_text(const ViewingConfiguration& way, const std::vector<studies::Arc>& arcs) {
-  if (way.tai_s.empty()) return arcs_text(arcs);
+  if (way.tai_s.empty()) return app::arcs_text(arcs);
   std::string text;
   for (const auto& [from, to] : arcs) {
     text += fmt::format("{}{} to {}", text.empty() ? "" : ", ", at(way, from), at(way, to));
