@@ -11,10 +11,6 @@
 namespace earthshine::raytrace {
 namespace {
 
-using ErrorPart;
-using ErrorSums;
-using StatedError;
-
 constexpr double one_sided_95 = 1.645;
 constexpr int tile_px = 32;  // samples are shared no further than about that
 // Tiles' squares are most often small and now and then large, so that their spread, found from

@@ -2,6 +2,7 @@
 // A solution whose radiosity is as exact over the surfaces as wanted, by its residual.
 #pragma once
 
+#include "raytrace/frame/options.h"
 #include "raytrace/solve_control/wanted_error.h"
 
 namespace earthshine::raytrace {

@@ -62,7 +62,7 @@ void PatchSampler::gather(const SurfaceSpot& from, const base::SobolOwen4& seque
   const bool is_even = incoming_.bright().empty();
   const std::size_t aimed = is_even ? 0 : rays / cosine_rays_each;
   MisContext share;
-  share.found_rays = static_cast<double>(rays);
+  share.cosine_samples = static_cast<double>(rays);
   share.aimed_rays = static_cast<double>(aimed);
   share.from = {from.at + from.lift, from.normal};
   const base::Frame3 frame = base::frame_around(from.normal);
@@ -98,7 +98,7 @@ void PatchSampler::aim(const SurfaceSpot& from, const std::array<float, 4>& u, c
                        std::size_t entry) {
   const IncomingLight::Aimed aimed =
       incoming_.aim({from.at + from.lift, from.normal}, double(u[0]), double(u[1]), double(u[2]),
-                    all.found_rays, all.aimed_rays);
+                    all.cosine_samples, all.aimed_rays);
   double weight = aimed.weight;
   if (weight <= 0.0) return;
   const auto visit = [&](const scenes::Hit& hit, const Vec3& direction, int step) {
@@ -120,7 +120,7 @@ void PatchSampler::aim(const SurfaceSpot& from, const std::array<float, 4>& u, c
 // (radiosity/factors/row_caster.cpp).
 void PatchSampler::follow(const scenes::Hit& first, const Vec3& along, const MisContext& share,
                           std::size_t entry) {
-  double weight = 1.0 / share.found_rays;
+  double weight = 1.0 / share.cosine_samples;
   const auto visit = [&](const scenes::Hit& hit, const Vec3& way, int step) {
     if (step > 0) ++rays_;
     if (step > scenes::most_specular_steps) return false;

@@ -19,6 +19,7 @@
 #include "radiosity/factors/form_factors.h"
 #include "radiosity/patches/patches.h"
 #include "radiosity/solution.h"
+#include "raytrace/frame/options.h"
 #include "raytrace/incoming/radiance_table.h"
 
 namespace earthshine::raytrace {

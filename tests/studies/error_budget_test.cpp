@@ -29,7 +29,7 @@ raytrace::ErrorBudget budget_of(const raytrace::RenderOptions& options,
   return raytrace::error_budget(small_room().study(), {&small_room().camera, options}, frame);
 }
 
-NoisyPicture traced(std::uint64_t seed) {
+NoisyPicture traced_room(std::uint64_t seed) {
   const tests::SmallRoom& room = small_room();
   raytrace::PathOptions options;
   options.columns = options.rows = 40;
@@ -45,7 +45,7 @@ NoisyPicture traced(std::uint64_t seed) {
 TEST(ErrorBudget, WhatIsAskedForIsStatedAndTrue) {
   // Against two independent path-traced pictures. Twelve pictures, three errors asked for: each
   // states no more than was asked, and nine of ten are no further off the truth than their bound.
-  const ReferencePair truth{traced(11), traced(12)};
+  const ReferencePair truth{traced_room(11), traced_room(12)};
   int within = 0, all = 0;
   for (const double asked : {0.1, 0.05, 0.03}) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {

@@ -25,7 +25,7 @@ TEST(Ladder, LeavesOutWhatHasNothingToVary) {
   steps = accuracy_ladder(scene, effects, {});
   for (const char* name :
        {series::error, series::patches, series::form_factor_rays, series::gather_rays,
-        series::picture_noise, series::lights, series::samples}) {
+        series::camera_samples, series::lights, series::samples}) {
     EXPECT_TRUE(has(steps, name)) << name;
   }
 }
