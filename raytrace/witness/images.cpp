@@ -318,8 +318,7 @@ void ImageFinder::add_highlight(const Facet& facet, const Source& source, const 
   spot.area_px2 =
       std::min(lobe_px2, facet.area_m2 * camera_.film_per_m2(camera_.position, at, facet.normal));
   spot.radius_px = std::sqrt(spot.area_px2 / pi);
-  spot.luminance =
-      source.illuminance(at) * cosine / pi * lobe;
+  spot.luminance = source.illuminance(at) * cosine / pi * lobe;
   add_visible(facet, source, at, spot, lit_);
 }
 

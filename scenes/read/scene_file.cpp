@@ -121,7 +121,6 @@ Scene scene_of(TomlNode tree, const std::filesystem::path& path,
   refuse_study(tree);
   Scene scene;
   scene.path = path;
-  scene.files.push_back(path);
   add_includes(tree, path, scene.files);
   std::vector<LampOff> off;
   for (const std::string& setting : overrides) apply_override(tree, setting, overrides_at, off);

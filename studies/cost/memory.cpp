@@ -59,7 +59,8 @@ double record_bytes(const MemoryCase& m) {
   const double entries = layers + (m.splits_parts ? 3.0 : 0.0);
   const PixelRecordBytes& b = pixel_record_bytes;
   const double per_layer = b.gather_per_layer + (m.in_rounds ? b.cast_per_layer : 0.0);
-  return b.sums + b.sums_per_entry * entries + b.gather_point + per_layer * layers;
+  return b.sums + b.sums_per_entry * entries +
+         (m.gathers ? b.gather_point + per_layer * layers : 0.0);
 }
 
 // Bytes per patch of a linear solve, whose product packs its columns in fours.
@@ -195,6 +196,8 @@ void add_picture(MemoryCase& m, const scenes::LightGroups& groups, const scenes:
     m.solves = false;
     m.columns = 0;
   }
+  m.gathers = (options.indirect == raytrace::Indirect::Radiosity && effects.solution) ||
+              (options.indirect != raytrace::Indirect::Distributed && effects.earth_by_gather);
 }
 
 void expect_rows(MemoryCase& m, const scenes::Scene& scene, const scenes::RayQuery& query,

@@ -50,6 +50,7 @@ struct MemoryCase {
   std::size_t channels = 0;   // of the picture, 4 bytes each
   std::size_t layers = 0;     // that read the solution: 1, or the light groups
   bool splits_parts = false;  // layers direct, indirect, specular
+  bool gathers = true;        // cosine rays carry light in the picture
   bool in_rounds = false;     // RenderOptions::has_rounds()
 };
 

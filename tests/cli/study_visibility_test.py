@@ -150,7 +150,7 @@ class Orbit(Case):
     def test_what_changed_is_done_again(self):
         call = ("study", "orbit", "bay.toml", "-o", "o", "--at", "0", "--camera", "B")
         self.done(*call)
-        for more in (("--set", "quality.gather_rays=32"), ("--set", "light.left.intensity=10"), ("--seed", "2"),
+        for more in (("--set", "quality.error=0.04"), ("--set", "light.left.intensity=10"), ("--seed", "2"),
                      ("--size", "40x40"), ("--set", "camera.B.fov_deg=51"), ("--set", "orbit.altitude_km=500")):
             self.done(*call, *more)
             self.assertFalse(self.costs("o")["picture s0 B"], more)

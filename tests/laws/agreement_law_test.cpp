@@ -25,6 +25,7 @@ struct Effort {
   double start_edge_m = 1.0;
   std::size_t max_patches = 6000;
   int gather_rays = 256;  // per pixel and replicate
+  int camera_samples = 64;
   int paths = 1024;       // per pixel, in each of two pictures
   raytrace::PathSet path_set = raytrace::PathSet::NoCaustics;
 };
@@ -46,6 +47,8 @@ tests::Agreement agreement(const scenes::Scene& scene, const Effort& effort) {
   raytrace::RenderOptions gather;
   gather.columns = gather.rows = 24;
   gather.gather_rays = effort.gather_rays;
+  gather.camera_samples = effort.camera_samples;
+  gather.denoise = false;  // whose bias the replicates share
   std::vector<base::Image> gathered;
   for (std::size_t k = 0; k < replicates; ++k) {
     gather.seed = 100 + k;

@@ -67,6 +67,7 @@ Estimate pictured(const scenes::Scene& scene, int seeds = 16) {
   raytrace::RenderOptions options;
   options.columns = options.rows = 2;
   options.indirect = raytrace::Indirect::None;
+  options.gather_rays = 256;
   return over_seeds(seeds, [&](std::uint64_t seed) {
     options.seed = seed;
     const auto frame = raytrace::render(prepared, {}, camera, options);

@@ -56,7 +56,8 @@ Frame drawn(const scenes::Scene& scene, bool per_light, std::uint64_t seed = 1) 
 }
 
 // Every layer is rounded a few times on its way (radiosity, its sum over rays, the pixel), by
-// 2^-24 of itself, all to one side at worst.
+// 2^-24 of itself, all to one side at worst. The residual is a difference of terms that are as
+// large as the light, in two halves of four paths: three times as much.
 void expect_same_sum(const scenes::Scene& scene, std::size_t cells, bool lit_everywhere) {
   const Frame whole = drawn(scene, false);
   const Frame parts = drawn(tests::in_parts(scene, cells), true);
@@ -76,7 +77,7 @@ void expect_same_sum(const scenes::Scene& scene, std::size_t cells, bool lit_eve
   std::size_t lit = 0;
   for (std::size_t i = 0; i < sum.size(); ++i) {
     lit += picture[i] > 0.0F ? 1 : 0;
-    EXPECT_NEAR(sum[i], double(picture[i]), 8.0 * 0x1p-24 * double(picture[i])) << i;
+    EXPECT_NEAR(sum[i], double(picture[i]), 24.0 * 0x1p-24 * double(picture[i])) << i;
   }
   EXPECT_GT(lit, lit_everywhere ? sum.size() * 9 / 10 : sum.size() / 4);
 }

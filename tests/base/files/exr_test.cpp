@@ -100,8 +100,8 @@ TEST(Exr, AttributesSurviveReadingAndWritingAgain) {
   const ExrFile once = read_exr(folder / "a.exr");
   EXPECT_EQ(once.header.text, (std::vector<std::pair<std::string, std::string>>{
                                   {"note", ""}, {"scene", "bay.toml"}}));
-  EXPECT_EQ(once.header.numbers,
-            (std::vector<std::pair<std::string, float>>{{"seed", 7.0F}, {"x", -1e-3F}}));
+  EXPECT_EQ(once.header.numbers, (std::vector<std::pair<std::string, float>>{
+                                     {"screenWindowWidth", 1.0F}, {"seed", 7.0F}, {"x", -1e-3F}}));
   write_exr(folder / "b.exr", once.image, once.header);
   EXPECT_EQ(read_bytes(folder / "a.exr"), read_bytes(folder / "b.exr"));
 }

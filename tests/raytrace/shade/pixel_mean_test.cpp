@@ -129,7 +129,7 @@ TEST(TurningLobe, IsItsMeanOverThePixel) {
       options.seed = seed;
       PathOptions paths;
       paths.columns = paths.rows = 3;
-      paths.paths_per_pixel = 64;
+      paths.paths_per_pixel = 512;
       paths.seed = seed;
       const Frame frame = by_paths ? trace_paths(prepared, camera, paths)
                                    : render(prepared, solution, camera, options);
