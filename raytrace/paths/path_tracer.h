@@ -5,13 +5,14 @@
 // A path starts at the camera and continues at each surface by one mechanism, drawn at random:
 // diffuse reflection, Phong lobe, mirror or glass. Each source is sampled by one strategy:
 //
-//   sources seen by the camera, directly or by             camera rays
+//   sources seen by the camera, directly or by      camera rays
 //     mirrors and glass only
-//   point, spot, rectangle, disk lamps; Sun; narrow        a shadow ray from every diffuse or glossy
-//     Earth; emitters that are a small part of the area      surface of the path
-//   wide Earth; emitters that are a large part             paths that hit them
-//   any of these by mirror or glass from a diffuse or      paths that hit them by chance (caustics);
-//     glossy surface                                         never for point and spot lamps
+//   point, spot, rectangle, disk lamps; Sun;        a shadow ray from every diffuse or
+//     narrow Earth; emitters that are a small         glossy surface of the path
+//     part of the area
+//   wide Earth; emitters that are a large part      paths that hit them
+//   any of these by mirror or glass from a          paths that hit them by chance (caustics);
+//     diffuse or glossy surface                       never for point and spot lamps
 //
 // Paths end by Russian roulette only, never at a fixed length. Paths are independent, hence the
 // variance is the sample variance over the number of paths, without bias. Conventions are those of
