@@ -157,7 +157,7 @@ void GatherField::find_off_grid_points(const std::vector<Found>& mirrored) {
       }
       same->off_grid_point.cover += 1.0F / packet_width;
     }
-    // Slivers get no point of their own.
+    // Slivers get no point.
     const auto from = of_tile.begin() + static_cast<std::ptrdiff_t>(first);
     of_tile.erase(std::remove_if(from, of_tile.end(),
                                  [](const Found& one) {

@@ -79,7 +79,7 @@ class PixelShader {
   [[nodiscard]] RayCounts rays() const;  // all rays cast so far
 
  private:
-  // Kind of the ray, which decides what it may see of the sources themselves.
+  // Kind of the ray; it decides which sources the ray may see.
   enum class Seen { ByCamera, ByLobe };
   struct Surface {
     scenes::Brdf brdf;

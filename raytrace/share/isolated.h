@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Isolated gather points: grid points without neighbours, and off-grid points without a grid point
-// or mirror neighbours on their surface. Only the half differences of their own few rounds measure
+// or mirror neighbours on their surface. Only the half differences of their few rounds measure
 // their noise. They are right on average, but the halves of one point may agree by chance, and a
 // point that seems exact would never get more samples.
 //

@@ -83,8 +83,7 @@ SurfaceSampler::SurfaceSampler(const scenes::World& scene, std::uint64_t seed)
 void SurfaceSampler::weigh(PatchSampler& sampler, std::span<const SurfaceSpot> places,
                            base::Key key, double mean, ResidualSums& sums, std::size_t points,
                            bool gathers) const {
-  const std::size_t gather_key = 6 + 3 * sources_.size();  // after the keys of aimed rays in
-                                                           // sample()
+  const std::size_t gather_key = 6 + 3 * sources_.size();  // after the aims of sample()
   for (std::size_t point = 0; point < points; ++point) {
     if (!sums.is_unsure(point, mean)) continue;
     sampler.start(1);
