@@ -193,8 +193,9 @@ class SurfaceSearch {
            !(may_cut() || may_cast());
   }
 
-  // Mean square at which the next pass stops dividing patches: at least the square of a fifth of the
-  // stated error, because patches that are divided for shadows cost rays of all other light, too.
+  // Mean square at which the next pass stops dividing patches: at least the square of a fifth of
+  // the stated error, because patches that are divided for shadows cost rays of all other light,
+  // too.
   [[nodiscard]] double enough() const {
     const double now = result_.steps.empty() ? first_error : result_.steps.back().estimate;
     return squared(std::max(cut_aim * wanted_.error, next_error * now) * rounds_->mean());
