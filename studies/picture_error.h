@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The error of a picture, from two reference pictures with independent noise.
 //
-//   error^2 = mean of (L - R1)(L - R2), over the square of mean (R1 + R2) / 2
-// With R1 = T + n1, R2 = T + n2, T the truth, and n1 and n2 independent of each other and of L, the
-// mean of the product is the mean of (L - T)^2 for any noise. Its standard error s, with and
-// without known variances v1, v2 of the references' pixels:
-//   s^2 = sum of [ (L - T)^2 (v1 + v2) + v1 v2 ] / pixels^2
-//   s^2 = sum of [ (m d)^2 ] / pixels^2,  m = L - (R1 + R2) / 2, d = R1 - R2
-// For normal noise with v1 = v2 both have the same mean; otherwise the second is larger.
-// Differences of pixels brighter than four times the mean have reduced weight, as in the errors
-// that pictures state (error_weight, raytrace/frame/frame.h).
+//   error^2 = mean of (L - R1)(L - R2), over the square of mean (R1 + R2) / 2.
+// Let R1 = T + n1, R2 = T + n2, with the truth T and noise n1 and n2 independent of each other and
+// of L. Then the mean of the product is the mean of (L - T)^2 for any noise. Let v1, v2 be the
+// variances of the references' pixels. The standard error s of the product is
+//   s^2 = sum of [ (L - T)^2 (v1 + v2) + v1 v2 ] / pixels^2    if v1, v2 are known,
+//   s^2 = sum of [ (m d)^2 ] / pixels^2                        otherwise.
+// Here m = L - (R1 + R2) / 2 and d = R1 - R2. For normal noise with v1 = v2 both have the same
+// mean; otherwise the second is larger. Differences of pixels brighter than four times the mean
+// have reduced weight, as in the errors that pictures state (error_weight, raytrace/frame/frame.h).
 #pragma once
 
 #include <cstddef>

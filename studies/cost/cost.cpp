@@ -250,8 +250,8 @@ RanksCost ranks_cost(const Bill& bill, std::size_t columns, double pixels) {
     (alone ? cost.alone_s : cost.shared_s) += seconds;
   }
   for (const raytrace::RenderReport& report : bill.pictures) cost.shared_s += report.seconds;
-  // Bytes per patch: the result of a row; in each sweep of the balance the factors, and their sums
-  // in 16 bands, at the end its row; in each iteration two products; four floats of the solution.
+  // Bytes per patch: the result of a row; in each sweep of the balance the factors and their sums
+  // in 16 bands. Then the row; two products in each iteration; four floats of the solution.
   // Products are packed in fours of columns.
   const auto patches = static_cast<double>(bill.solve.patches);
   const double sweeps = bill.solve.balance.sweeps, fours = std::ceil(double(columns) / 4.0);

@@ -24,10 +24,10 @@ struct PilotCall : scenes::World {
 };
 
 // Predicts the cost of the run. Solves the scene on coarse patches, or the first patches of
-// refinement, with fewer rays. A picture with a wanted error is drawn for a few CPU seconds; its
-// rays and seconds are scaled by the remaining squared error over the wanted one. Other pictures
-// are drawn with a thousand pixels and, if that is fast, with four thousand, with noise scaled to
-// their pixels; rays and seconds are scaled to the patches, rows and pixels of the run
+// refinement, with fewer rays. A picture with a wanted error is drawn for 2 CPU seconds; its rays
+// and seconds are scaled by the remaining squared error over the wanted one. Other pictures are
+// drawn with a thousand pixels and, if that is fast, with four thousand, with noise scaled to their
+// pixels. Their rays and seconds are scaled to the patches, rows and pixels of the run
 // (cost_laws.h). Seconds are those of an idle machine: CPU seconds over threads. For paths, traces
 // a few per pixel. pictures: of the wanted size.
 struct Pilot {
@@ -55,8 +55,8 @@ struct EffectCost {
 
 // The parts of the bill that ranks divide, and that each rank repeats (docs/scaling.md). The
 // seconds of a picture count as divided, although each rank repeats some. bytes_to_all: values per
-// patch or pixel that every rank gets; bytes_dealt: data for one rank each, entries of form factors
-// and bands of columns' sums.
+// patch or pixel for every rank. bytes_dealt: data for one rank each, entries of form factors and
+// sums of columns.
 struct RanksCost {
   double shared_s = 0.0, alone_s = 0.0, bytes_to_all = 0.0, bytes_dealt = 0.0;
 };

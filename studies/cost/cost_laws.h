@@ -10,9 +10,9 @@
 namespace earthshine::studies {
 
 // Patches at the end of refinement, at most `most`: a power law through the errors of the first and
-// the last round, error ~ patches^-p, with p limited to 0.25 to 1 (the first rounds are noisy;
-// piecewise constant light converges as patches^-1/2, slower around shadow edges). In the remaining
-// rounds the patches grow by at most the largest factor of the last four rounds.
+// the last round, error ~ patches^-p. The first rounds are noisy, so that p is limited to 0.25 to 1
+// (piecewise constant light converges as patches^-1/2, slower around shadow edges). In the
+// remaining rounds the patches grow by at most the largest factor of the last four rounds.
 [[nodiscard]] double expected_patches(const std::vector<radiosity::RefineRound>& rounds,
                                       double wanted_error, double most);
 
@@ -22,10 +22,10 @@ struct SolveScale {
   double row_entries = 0.0;  // of a mean row of the whole run
   bool refines = false;
 };
-// Rays and seconds of form factors are proportional to patches times rays; shadow rays and their
-// seconds to patches; balance and linear solve to the entries of the matrix, at least those of the
-// small run. Refinement is proportional to patches times an eighth of the rays, which its rounds
-// use, at least as many as in the small run.
+// Rays and seconds of form factors are proportional to patches times rays. Shadow rays and their
+// seconds are proportional to patches. Balance and linear solve are proportional to the entries of
+// the matrix, and cost at least as much as in the small run. Refinement is proportional to patches
+// times an eighth of the rays, which its rounds use, at least as many as in the small run.
 [[nodiscard]] radiosity::SolveReport scaled(const radiosity::SolveReport& small,
                                             const SolveScale& scale);
 

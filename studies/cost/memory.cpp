@@ -40,9 +40,9 @@ constexpr double entry_bytes = 8.0;      // column and hits
 // Bands of rows are joined to the matrix in sixteenths. Ranks send them to each other; a fast rank
 // has cast more bands than its part.
 constexpr double joined_copies = 1.0 + 1.0 / 16.0, sent_copies = 1.5;
-// Doubles per patch and column, of own rows: during the linear solve direct light and nine vectors
-// (linear_solve.h), and three of reflectance a row; then exitance, radiosity and illuminance, which
-// are replaced by the four floats of the solution on every rank.
+// Doubles per patch and column, of own rows. During the linear solve: direct light and nine vectors
+// (linear_solve.h), and three of reflectance a row. After it: exitance, radiosity and illuminance,
+// which the four floats of the solution on every rank replace.
 constexpr double light_vectors = 1.0, iteration_vectors = 9.0, found_vectors = 4.0;
 constexpr double reflectance_bytes = 24.0;
 // During the statement of the solution's error: two parts of the light and the solution as floats,

@@ -4,7 +4,7 @@
 //   out-of-view  it would not be in view even alone
 //   hidden       removes objects in front of a tenth of it or more, by name
 //   black-back   a one-sided surface seen from behind reflects like its front
-//   unlit        a source reaches all points that face it, is switched on, or is a lamp at a quarter
+//   unlit        a source reaches all points that face it, is on, or is a lamp at a quarter
 //                of its distance; the largest gain first
 //   iris         opens the iris as without a bright thing, by name; its light remains, unless only
 //                both changes together help
