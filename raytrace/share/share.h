@@ -17,12 +17,15 @@
 //   (1 - c)^2 s + c^2 q + 4 q D c'(D) / N,   at most D
 // 1/N: inverse degrees of freedom of s. The spread of the noise fields does not give N, because all
 // fields come from the same rounds. Means of (d^2 - n^2) / e with random signs measure the standard
-// error of s; its square is 2 / N of q^2 (more rounds give a better n and a larger N). If the
-// ratios s / q of a level vary over the picture by no more than 2 / N, as on smooth surfaces, all
-// windows share one ratio (signals.h). Where c = 0 at single pixels, the positive part of an
+// error of s; its square is 2 / N of q^2 (more rounds give a better n and a larger N).
+//
+// If the ratios s / q of a level vary over the picture by no more than 2 / N, as on smooth surfaces,
+// all windows share one ratio (signals.h). Where c = 0 at single pixels, the positive part of an
 // uncertain s would exceed the remaining error by far: s is then limited to the range from 0 to s
 // of the next coarser level. An edge has half of the coarser signal, a smooth region a quarter or
-// less. The stated squared error is the sum over the levels and the noise of the rest. Noise and
+// less.
+//
+// The stated squared error is the sum over the levels and the noise of the rest. Noise and
 // blur both vanish as samples grow.
 #pragma once
 

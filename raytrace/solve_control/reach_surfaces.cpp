@@ -279,8 +279,8 @@ radiosity::SolveOptions first_surface_options(const scenes::Scene& scene, double
 
 PatchBound patch_bound(const Wanted& wanted, const scenes::Quality& given, std::size_t first,
                        std::size_t largest) {
-  constexpr int rays = 16;          // a patch, which coarse ones share
-  constexpr std::size_t near = 64;  // of which one more or less does not count
+  constexpr int rays = 16;          // per patch, as coarse patches share theirs
+  constexpr std::size_t near = 64;  // finds the bound to 1/64
   PatchBound bound{std::max(first, largest)};
   if (given.max_patches) {
     const std::size_t allowed = std::max(first, static_cast<std::size_t>(*given.max_patches));

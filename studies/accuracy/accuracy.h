@@ -3,7 +3,7 @@
 // pictures.
 //
 // The reference is the path tracer: it has no patches, no form factors and no shared gather rays.
-// Its only error is noise, which is subtracted (picture_error.h). There are three references:
+// Its only error is noise, which is subtracted (picture_error.h). There are three references.
 //   full      all light paths: the correct picture
 //   gathered  without the paths that a render on a solution omits by design (PathSet): the limit of
 //             radiosity with ever finer settings

@@ -32,8 +32,8 @@ struct Trade {
 [[nodiscard]] std::optional<std::size_t> cheapest_within(const std::vector<Trade>& points,
                                                          double wanted);
 
-// The range in which a method is the cheapest: at an error e, the fastest of all points with error
-// <= e is one of its own.
+// The range in which a method is the cheapest: at an error e, the fastest of all points with an
+// error <= e belongs to the method.
 struct Worth {
   std::string method;
   bool ever = false;     // it is the cheapest for some error

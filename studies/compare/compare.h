@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares radiosity, the distributed-light approximation and direct light in one camera's view.
 //
-// All are measured against an independent reference: the mean of two pictures, each of its own
-// radiosity solution (patches of half the edge, other random numbers), drawn to half the wanted
-// error or, without one, without denoising and with `reference_factor` times the samples. The error
+// All are measured against an independent reference, the mean of two pictures. Each picture has a
+// separate radiosity solution (patches of half the edge, other random numbers). It is drawn to half
+// the wanted error or, without one, with `reference_factor` times the samples and without denoising.
+// The error
 // is computed as in all studies (picture_error.h). The variances of the pair are unknown, because
 // no picture states the noise of its solution.
 #pragma once

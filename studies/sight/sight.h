@@ -138,11 +138,11 @@ struct CameraSight {
 // radiance: R, G, B or Y in cd/m^2, of the plan's size. cctv: its seed has no effect. The scene is
 // static except for moving targets, and the camera is in its steady state. A target that shows
 // black backs is at best doubtful, because the luminance of the real backs is unknown. Throws as
-// degrade::degrade does, and base::Error (Input) if the sizes differ. deviation: per target, the
-// standard error of the difference of mean luminances, target minus surround, cd/m^2; empty: the
-// picture is exact. The bounds are 1.96 standard errors away. For m parts, each difference has m
-// times that variance, and their squares add up: the lower bound is (1.96^2 + m)^(1/2) standard
-// errors away.
+// degrade::degrade does, and base::Error (Input) if the sizes differ.
+// deviation: per target, the standard error of the difference of mean luminances, target minus
+// surround, cd/m^2; empty: the picture is exact. The bounds are 1.96 standard errors away. For m
+// parts, each difference has m times that variance, and their squares add up: the lower bound is
+// (1.96^2 + m)^(1/2) standard errors away.
 [[nodiscard]] CameraSight measure_sight(const SightPlan& plan, const base::Image& radiance,
                                         const std::optional<degrade::Setup>& cctv,
                                         const SightOptions& options = {},

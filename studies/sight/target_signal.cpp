@@ -117,8 +117,8 @@ struct Needed {
   double lines = 0.0;       // across the target
 };
 
-// C0 MTF(u) = 3 / SNR, with the SNR of one bar: half a period wide, as long as the target, so that
-// it has 1 / (2 u lines) of its resels; at least the SNR of a resel.
+// C0 MTF(u) = 3 / SNR, with the SNR of one bar, but at least the SNR of a resel. A bar is half a
+// period wide and as long as the target, so that it has 1 / (2 u lines) of its resels.
 double least_modulation(const Needed& needed, double frequency) {
   const double bars = std::max(1.0, 2.0 * frequency * needed.lines);
   const double variance = std::min(needed.of_resel, needed.of_target * bars);

@@ -37,9 +37,9 @@ struct TargetResels {
     const SightOptions& options, std::span<const ContrastBounds> bounds);
 
 // Effect of a tube's lag on a target that moves by `speed` resels per field in `direction_rad`. The
-// signal of a field is (1 - lag) sum lag^k of the light k fields ago, when the target was k speed
-// behind. share: remaining difference from the surround, the mean over a box of `extent` resels, (1
-// - lag) sum lag^k max(0, 1 - k speed / extent).
+// signal of a field is (1 - lag) sum lag^k of the light k fields ago. The target was k speed behind
+// then. share: remaining difference from the surround, the mean over a box of `extent` resels:
+//   (1 - lag) sum lag^k max(0, 1 - k speed / extent).
 struct Trail {
   double lag = 0.0, speed = 0.0, direction_rad = 0.0;
   [[nodiscard]] double share(double extent) const;
@@ -48,8 +48,8 @@ struct Trail {
 };
 
 // MTF of the chain at `frequency` cycles per resel in a direction of the picture (radians from
-// along to across): lens, area average of the resel, tube, video line, and on the screen the width
-// of a resel and the phosphor. Stages that are off have an MTF of 1.
+// along to across). The chain has lens, area average of the resel, tube and video line, and on the
+// screen the width of a resel and the phosphor. Stages that are off have an MTF of 1.
 [[nodiscard]] double chain_modulation(const degrade::Setup& setup, double direction_rad,
                                       double frequency);
 
