@@ -50,9 +50,8 @@ struct WatchedPicture {
 [[nodiscard]] ErrorBudget error_budget(const scenes::World& scene, const WatchedPicture& picture,
                                        const Frame& frame);
 
-
-// The pixels of the picture's window whose centre shows an object, by ascending number row *
-// columns + column in the whole picture.
+// The pixels of the picture's window whose centre shows an object, by ascending number
+// row * columns + column in the whole picture.
 class SurfacePixels {
  public:
   SurfacePixels(const scenes::World& scene, const scenes::Camera& camera,

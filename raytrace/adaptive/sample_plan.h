@@ -31,8 +31,8 @@ struct SampleCosts {
 struct SamplePlan {
   std::array<std::vector<std::uint32_t>, gathered_kinds> field;  // more samples per point
   std::vector<std::uint32_t> camera;                             // total samples per pixel
-  double cost = 0.0, field_cost = 0.0;  // whole cost, and cost of `field`
-  double squared_error = 0.0;           // expected after the plan
+  double cost = 0.0, field_cost = 0.0;                           // whole cost, and cost of `field`
+  double squared_error = 0.0;                                    // expected after the plan
 };
 
 class SamplePlanner {

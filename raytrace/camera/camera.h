@@ -54,7 +54,6 @@ struct CameraModel {
 // Square pixels; fov_deg is the vertical field for any size of the picture.
 [[nodiscard]] CameraModel make_camera_model(const scenes::Camera& camera, int columns, int rows);
 
-
 // A camera as the matrices of other programs, to project positions into its picture and to cast
 // pixels back into the scene. Pixels count from the picture's top left corner: the centre of the
 // first one is (0.5, 0.5).
@@ -75,7 +74,6 @@ struct CameraMatrices {
 
 // For a lens, from its centre.
 [[nodiscard]] CameraMatrices camera_matrices(const CameraModel& camera);
-
 
 // Winding number of an object's opaque one-sided triangles around a point: 1 inside a closed body,
 // 0 outside, -1 inside a closed room (fronts inward), in between for open surfaces. The sum of

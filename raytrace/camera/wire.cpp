@@ -13,9 +13,9 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr std::size_t edges_per_chunk = 64;
-constexpr int halvings = 4;          // of a probe's step of 1 px
-constexpr double margin_px = 1.0;    // around the picture
-constexpr double near_share = 1e-6;  // of the edge's length: clipping distance from the camera
+constexpr int halvings = 4;               // of a probe's step of 1 px
+constexpr double margin_px = 1.0;         // around the picture
+constexpr double near_share = 1e-6;       // of the edge's length: clipping distance from the camera
 constexpr double least_stretch_px = 1.5;  // of a partly hidden edge
 constexpr double depth_slack_px = 1;      // pixel widths that an occluder must be in front
 constexpr double offset_slack = 4.0;      // or this many ray offsets from points on the edge

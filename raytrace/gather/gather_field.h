@@ -70,7 +70,7 @@ class GatherField {
  public:
   struct Setting {
     std::size_t image_layers = 1;
-    int step = 1;  // pixels of the picture along the edge of a pixel of the field
+    int step = 1;                  // pixels of the picture along the edge of a pixel of the field
     bool keeps_sky_apart = false;  // one more layer: light straight from the sky
     bool gathers_residual = true;
     bool shares = true;         // denoises between neighbours
@@ -260,11 +260,10 @@ class GatherField {
   std::array<Shared, gathered_kinds> shared_;
   std::vector<glm::vec3> diffuse_;                            // point * layers
   std::array<std::vector<glm::vec3>, gathered_kinds> total_;  // denoised sum of several layers
-  std::array<std::vector<glm::vec3>, 2> sums_;  // of the image layers: diffuse, lobe
+  std::array<std::vector<glm::vec3>, 2> sums_;                // of the image layers: diffuse, lobe
   std::array<RayCounts, gathered_kinds> rays_of_;
   std::array<Notes, gathered_kinds> notes_;
-  std::vector<std::uint64_t>
-      mirror_neighbours_;  // per off-grid point (MirrorNeighbourhood::masks)
+  std::vector<std::uint64_t> mirror_neighbours_;  // per off-grid point (MirrorNeighbourhood::masks)
   std::uint64_t camera_rays_ = 0;
   bool any_lobe_ = false;
   std::optional<Neighbours> of_surface_, of_material_;  // neighbourhoods for diffuse light and for

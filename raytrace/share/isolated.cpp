@@ -23,8 +23,7 @@ void regularise_isolated_variance(const Neighbours& neighbours, const Window& wi
   };
   const auto stands_alone = [&](std::size_t p) {
     if (p < grid) return neighbours.is_alone(p);
-    return shared.inverse_dof[0][p] <=
-           0.0F;  // points with a base or mirror neighbours have 1 / N
+    return shared.inverse_dof[0][p] <= 0.0F;  // points with a base or mirror neighbours have 1 / N
   };
   std::vector<Around> regions(region_of(window.pixel_count() - 1, columns) + 1U);
   for (std::size_t p = 0; p < points; ++p) {

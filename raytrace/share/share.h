@@ -19,11 +19,11 @@
 // fields come from the same rounds. Means of (d^2 - n^2) / e with random signs measure the standard
 // error of s; its square is 2 / N of q^2 (more rounds give a better n and a larger N).
 //
-// If the ratios s / q of a level vary over the picture by no more than 2 / N, as on smooth surfaces,
-// all windows share one ratio (signals.h). Where c = 0 at single pixels, the positive part of an
-// uncertain s would exceed the remaining error by far: s is then limited to the range from 0 to s
-// of the next coarser level. An edge has half of the coarser signal, a smooth region a quarter or
-// less.
+// If the ratios s / q of a level vary over the picture by no more than 2 / N, as on smooth
+// surfaces, all windows share one ratio (signals.h). Where c = 0 at single pixels, the positive
+// part of an uncertain s would exceed the remaining error by far: s is then limited to the range
+// from 0 to s of the next coarser level. An edge has half of the coarser signal, a smooth region a
+// quarter or less.
 //
 // The stated squared error is the sum over the levels and the noise of the rest. Noise and
 // blur both vanish as samples grow.
@@ -50,8 +50,7 @@ inline constexpr std::uint32_t seen_straight = 0xffffffffU;
 // A point seen in a mirror lies at its virtual position behind the mirror.
 struct GatherPoint {
   glm::vec3 position{0.0F};  // m, as Sighting::position
-  float reach_m =
-      -1.0F;  // harmonic mean length of rays that hit surfaces; negative: no rays
+  float reach_m = -1.0F;     // harmonic mean length of rays that hit surfaces; negative: no rays
   glm::vec3 normal{0.0F};    // unit, on the camera's side
   float spacing_m = 0.0F;    // distance of neighbouring pixels there, across the view
   float reflectance = 0.0F;  // luminance of k_d, times the mirror's reflectance
@@ -200,7 +199,6 @@ enum class Keep { AsTold, All };
       s - (tuning::noise_margin + tuning::chance_margin * std::sqrt(2.0F * inverse_dof)) * q;
   return sure > 0.0F ? sure / (sure + q) : 0.0F;
 }
-
 
 // Whether two points seen through nearby pixels lie on the same flat or gently curved surface:
 // their normals are within 25 degrees, and neither point is further off the other's tangent plane

@@ -14,9 +14,9 @@
 namespace earthshine::raytrace {
 
 struct Wanted {
-  double error = 0.02;               // relative
-  double seconds = 0.0;              // time limit from now() = 0; 0: none
-  std::function<double()> now = {};  // elapsed seconds
+  double error = 0.02;                                      // relative
+  double seconds = 0.0;                                     // time limit from now() = 0; 0: none
+  std::function<double()> now = {};                         // elapsed seconds
   std::function<bool(double patches, int rays)> fits = {};  // into memory; empty: always
   // Whether to end with the current result; called by many threads. Empty: never. Not with ranks.
   std::function<bool()> stop = {};
@@ -66,7 +66,6 @@ struct PassError {
 
 // Called before each solve; returns the listener for its duration, which may be empty.
 using SolveListener = std::function<void(const radiosity::SolveReport&)>;
-
 
 // Options of a solve for pictures of a wanted error. Pictures measure and add the residual of the
 // solution, which therefore affects only their cost: patches and rays that cost about as much as

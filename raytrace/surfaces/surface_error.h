@@ -12,13 +12,12 @@
 
 namespace earthshine::raytrace {
 
-
 // Parts of the error, relative to the mean radiosity of the surfaces.
 struct SolutionError {
   ErrorEstimate form_factors;  // noise of rays, and light that they miss
   ErrorEstimate patches;       // constant radiosity within a patch
-  ErrorEstimate lamps;   // noise of shadow rays to lamps, Sun and emitters
-  ErrorEstimate solver;  // remaining error of the iteration
+  ErrorEstimate lamps;         // noise of shadow rays to lamps, Sun and emitters
+  ErrorEstimate solver;        // remaining error of the iteration
   [[nodiscard]] ErrorEstimate total() const { return form_factors + patches + lamps + solver; }
 };
 

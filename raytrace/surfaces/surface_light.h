@@ -78,10 +78,10 @@ class LightOnSurfaces {
   SurfaceLight light_;
   radiosity::FormFactors factors_;
   radiosity::PatchAlbedos reflectances_;
-  std::vector<Rgb> emitted_;                // per coarse patch: emission in the form factors;
-                                            // empty: none
-  std::vector<std::uint32_t> coarse_;       // per patch
-  std::vector<double> coarse_reflectance_;  // per own coarse row and colour
+  std::vector<Rgb> emitted_;                     // per coarse patch: emission in the form factors;
+                                                 // empty: none
+  std::vector<std::uint32_t> coarse_;            // per patch
+  std::vector<double> coarse_reflectance_;       // per own coarse row and colour
   std::vector<double> lamp_rays_, gather_rays_;  // per patch
   std::vector<double> escape_, lost_;            // per patch: shares of the light that leaves it
 };

@@ -66,7 +66,7 @@ struct PatchResidual {
   float mean_variance = 0.0F;                // variance of the mean over the points, due to rays
   float lamps_mean_square = 0.0F, lamps_mean_variance = 0.0F;  // of S's part of r
   float along_s = 0.0F, along_t = 0.0F;  // reduction of r^2 by halving the patch
-  std::array<float, 2> mean{};  // mean of r over alternate points; independent on spots
+  std::array<float, 2> mean{};           // mean of r over alternate points; independent on spots
   // `mean` without weight.
   std::array<glm::vec3, 2> half{glm::vec3(0.0F), glm::vec3(0.0F)};
   std::array<float, 2> gathered{};  // luminance, lx: by each half of the rays

@@ -48,7 +48,7 @@ struct StepCost {
   int form_factor_rays = 0, gather_rays = 0;  // per patch, per pixel
   double camera_samples = 0.0;                // per pixel, mean
   double memory_bytes = 0.0;                  // memory.h, for its patches and rows
-  raytrace::ErrorEstimate stated;  // the picture's stated error (error_budget.h)
+  raytrace::ErrorEstimate stated;             // the picture's stated error (error_budget.h)
   // CPU seconds of the statement; not included above, except for settings that depend on it.
   double statement_cpu_seconds = 0.0;
 };

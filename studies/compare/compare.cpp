@@ -172,7 +172,7 @@ class Comparing {
   const scenes::Camera& camera_;
   const CompareOptions& options_;
   const raytrace::StageListener& listen_;
-  ReferencePair pair_, reflected_;  // all light; without light straight from the sources
+  ReferencePair pair_, reflected_;            // all light; without light straight from the sources
   std::vector<float> mean_, mean_reflected_;  // luminance of the pairs' means
   std::vector<bool> counted_;                 // pixels of `reflected_`
   Comparison comparison_;

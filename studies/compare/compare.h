@@ -3,10 +3,9 @@
 //
 // All are measured against an independent reference, the mean of two pictures. Each picture has a
 // separate radiosity solution (patches of half the edge, other random numbers). It is drawn to half
-// the wanted error or, without one, with `reference_factor` times the samples and without denoising.
-// The error
-// is computed as in all studies (picture_error.h). The variances of the pair are unknown, because
-// no picture states the noise of its solution.
+// the wanted error or, without one, with `reference_factor` times the samples and without
+// denoising. The error is computed as in all studies (picture_error.h). The variances of the pair
+// are unknown, because no picture states the noise of its solution.
 #pragma once
 
 #include <cstdint>

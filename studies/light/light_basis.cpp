@@ -19,8 +19,8 @@ constexpr double same_direction = 1e-9;  // rad
 constexpr int cell_side = 12;            // directions across a cell for its mean radiance
 constexpr double no_sun = 1e-12;         // factor of a Sun that is off while the Earth reflects its
                                          // light
-// Bound of the range of a smooth radiance between two of these directions over its range on them: 1
-// / 12^2 of a parabola's range over the cell, and half as much more for other functions.
+// Bound of the range of a smooth radiance between two of these directions over its range on them:
+// 1 / 12^2 of a parabola's range over the cell, and half as much more for other functions.
 constexpr double between_directions = 1.01;
 
 bool same(const Vec3& a, const Vec3& b) { return glm::length(a - b) < same_direction; }

@@ -76,10 +76,10 @@ struct ConditionOptions {
 };
 
 // Evaluates conditions in order. Reasons, which cost most, are found once per run of similar
-// conditions; the other conditions refer to the first one. Similar conditions have the same setting,
-// verdict and iris (within a quarter of a stop), and the same sources off for the same causes.
-// Their probabilities and shares of direct light are within 0.05 of the first condition's, and the
-// luminances of target and surround within a tenth.
+// conditions; the other conditions refer to the first one. Similar conditions have the same
+// setting, verdict and iris (within a quarter of a stop), and the same sources off for the same
+// causes. Their probabilities and shares of direct light are within 0.05 of the first condition's,
+// and the luminances of target and surround within a tenth.
 [[nodiscard]] std::vector<Outcome> judge_conditions(const LightBasis& basis,
                                                     const scenes::RayQuery& query,
                                                     const BasisView& view,

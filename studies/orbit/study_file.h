@@ -50,7 +50,7 @@ struct StudyFile {
   std::optional<int> columns, rows;           // empty: the camera's own
   std::vector<double> positions_deg;  // along the orbit, rising; empty: the scene's own position
   bool timeline = false;              // the positions are evenly spaced over one orbit
-  bool usual_positions = false;  // default positions: a scene with a [time] uses that instead
+  bool usual_positions = false;       // default positions: a scene with a [time] uses that instead
   std::optional<scenes::TimeSpan> time;  // replaces positions, for scenes with a trajectory
   std::vector<LampSetting> lamps;        // never empty
   std::map<std::string, std::string> camera_models;  // CCTV camera by camera

@@ -29,7 +29,8 @@ inline constexpr double least_lamp_factor = 0x1p-21, most_lamp_factor = 8.0, lam
                                                  double wanted);
 
 // Spans of the positions (rising, deg) where the probability is at least `wanted`. Spans end where
-// linear interpolation between neighbouring positions crosses `wanted`. closed: the positions cover one orbit, and a span across 360 deg is one span.
+// linear interpolation between neighbouring positions crosses `wanted`. closed: the positions cover
+// one orbit, and a span across 360 deg is one span.
 using Arc = std::pair<double, double>;
 [[nodiscard]] std::vector<Arc> arcs_above(const std::vector<double>& positions_deg,
                                           const std::vector<double>& probability, double wanted,

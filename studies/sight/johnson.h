@@ -36,7 +36,6 @@ struct Extent {
 [[nodiscard]] Extent least_extent(const std::vector<std::uint32_t>& pixels,
                                   const scenes::Camera& camera, int columns, int rows);
 
-
 // The least luminance difference that an unaided eye adapted to `luminance` (cd/m^2) sees, cd/m^2:
 // the lower of the thresholds of cones and rods, with x = log10 L_a (Ferwerda, Pattanaik, Shirley,
 // Greenberg 1996):
@@ -46,8 +45,8 @@ struct Extent {
 //                     (0.405 x + 1.6)^2.18 - 2.86 in between
 [[nodiscard]] double threshold_difference(double luminance);
 
-// Finest grating that the eye resolves, cycles per degree, at least 0: 17.25 atan(1.4 log10 L_a +
-// 0.35) + 25.72 (Ward Larson, Rushmeier, Piatko 1997, after Shlaer 1937).
+// Finest grating that the eye resolves, cycles per degree, at least 0: 17.25
+// atan(1.4 log10 L_a + 0.35) + 25.72 (Ward Larson, Rushmeier, Piatko 1997, after Shlaer 1937).
 [[nodiscard]] double acuity_cycles_per_deg(double luminance);
 
 struct EyeOptions {

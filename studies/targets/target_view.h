@@ -37,7 +37,7 @@ struct TargetView {
   std::size_t pixels = 0;        // seen
   std::size_t pixels_alone = 0;  // at least as many as seen
   bool in_frame = false;         // a corner of it is within the picture, seen or not
-  bool cut_by_frame = false;  // alone, it reaches the picture's border: parts may be outside
+  bool cut_by_frame = false;     // alone, it reaches the picture's border: parts may be outside
   // Pixels of `alone` that show something else: indices in ascending order.
   std::vector<std::uint32_t> hidden;
   // The objects on those pixels, most pixels first.

@@ -59,8 +59,9 @@ TEST(Reflection, SmallBrightPatchLightsAPlateByItsFormFactor) {
               4.0 * 0.01);
 }
 
-// A small glossy plate in a large furnace of radiance 1 / pi, seen along its normal: pi L = k_d +
-// (2 k_s / (n + 2)), the second term the integral of (k_s / pi) cos^(n+1) over the hemisphere.
+// A small glossy plate in a large furnace of radiance 1 / pi, seen along its normal:
+// pi L = k_d + (2 k_s / (n + 2)), the second term the integral of (k_s / pi) cos^(n+1) over the
+// hemisphere.
 void expect_glossy_albedo(double exponent, double specular) {
   tests::SceneBuilder builder;
   const std::uint32_t wall = builder.material(tests::grey(0.7, 0.3));
@@ -76,8 +77,8 @@ void expect_glossy_albedo(double exponent, double specular) {
   camera.up = Vec3(0, 1, 0);
   camera.fov_deg = 0.1;
   const double expected = 0.2 + 2.0 * specular / (exponent + 2.0);
-  // 2048 lobe rays whose weights 2 k_s cos / (n + 1) have a standard deviation of about their mean
-  // / (n + 2).
+  // 2048 lobe rays whose weights 2 k_s cos / (n + 1) have a standard deviation of about their
+  // mean / (n + 2).
   const double std_error = 2.0 * specular / (exponent + 2.0) / (exponent + 2.0) / std::sqrt(2048.0);
   EXPECT_NEAR(base::pi * mean_green(builder.scene, camera, 5.0), expected, 4.0 * std_error + 1e-5);
 }

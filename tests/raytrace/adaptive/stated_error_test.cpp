@@ -32,9 +32,9 @@ TEST(Doubt, IsThatOfThePixelsThatHoldTheError) {
 }
 
 // Half differences of normal noise of variance 1 in 2500 pixels: once in ten times the true error,
-// 1, exceeds the stated error times its confidence_factor. 4000 pictures measure this to sqrt(0.1 *
-// 0.9 / 4000). The sum of 2500 squares has a skewness g = sqrt(8 / 2500). With a standard error
-// from the same squares, this adds phi(z) (2 z^2 + 1) / 6 g, phi the normal density.
+// 1, exceeds the stated error times its confidence_factor. 4000 pictures measure this to
+// sqrt(0.1 * 0.9 / 4000). The sum of 2500 squares has a skewness g = sqrt(8 / 2500). With a
+// standard error from the same squares, this adds phi(z) (2 z^2 + 1) / 6 g, phi the normal density.
 TEST(Doubt, IsExceededOnceInTenTimes) {
   constexpr int pictures = 4000;
   constexpr std::size_t pixels = 2500;

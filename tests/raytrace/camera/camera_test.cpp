@@ -83,8 +83,8 @@ TEST(Camera, FilmIsWhereRaysCameFrom) {
 }
 
 TEST(Camera, BlurCircleFollowsTheThinLens) {
-  // A point at distance z seen through a lens of diameter A focused at s: its pencil is A |s - z| /
-  // z wide in the plane in focus.
+  // A point at distance z seen through a lens of diameter A focused at s: its pencil is
+  // A |s - z| / z wide in the plane in focus.
   scenes::Camera lens = looking_down_x();
   lens.focus_m = 4.0;
   lens.aperture_m = 0.2;

@@ -16,10 +16,10 @@ struct Row {
   double variance;  // closed form, of width 1
 };
 
-// Triangle of full width w: w^2/24. Gaussian of s = w/6 cut at 3 s: s^2 (1 - 2 z p(z) / (2 P(z) -
-// 1)), z = 3, p and P the normal density and distribution. Blackman-Harris: the integral of x^2 cos
-// (2 pi k x/w) over the support is w^3 (-1)^k / (2 pi^2 k^2), for k = 0 w^3/12, and only a0
-// contributes to the integral of the filter.
+// Triangle of full width w: w^2/24. Gaussian of s = w/6 cut at 3 s:
+// s^2 (1 - 2 z p(z) / (2 P(z) - 1)), z = 3, p and P the normal density and distribution.
+// Blackman-Harris: the integral of x^2 cos (2 pi k x/w) over the support is w^3 (-1)^k / (2 pi^2
+// k^2), for k = 0 w^3/12, and only a0 contributes to the integral of the filter.
 double gaussian_variance() {
   const double z = 3.0, density = std::exp(-z * z / 2) / std::sqrt(2.0 * base::pi);
   return (1.0 - 2.0 * z * density / std::erf(z / std::sqrt(2.0))) / 36.0;

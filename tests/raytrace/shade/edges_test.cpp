@@ -70,10 +70,10 @@ scenes::Sun point_sun(const Vec3& direction) {
 }
 
 // Allowed error at an edge. Each of 4 x 4 equal squares of a pixel has one of 16 samples, at a
-// uniform position. A straight line crosses at most 7 of them. There the squared error is c (1 -
-// c), 1/6 on average over positions of the line: the RMS error is sqrt(7 / 6) / 16 over all pixels,
-// and with 1/4 in each square four times sqrt(7 / 4) / 16 in any pixel. With 4 samples it would be
-// sqrt(3 / 6) / 4, since the line crosses at most 3 of 2 x 2.
+// uniform position. A straight line crosses at most 7 of them. There the squared error is
+// c (1 - c), 1/6 on average over positions of the line: the RMS error is sqrt(7 / 6) / 16 over all
+// pixels, and with 1/4 in each square four times sqrt(7 / 4) / 16 in any pixel. With 4 samples it
+// would be sqrt(3 / 6) / 4, since the line crosses at most 3 of 2 x 2.
 const double most_rms = std::sqrt(7.0 / 6.0) / 16.0, most_anywhere = std::sqrt(7.0 / 4.0) / 4.0;
 
 // values: relative to a fully covered pixel.

@@ -11,14 +11,14 @@
 namespace earthshine::raytrace {
 namespace {
 
-// The middle pixel of 3 x 3 looks straight down on a dark floor from the foot of a sunlit wall to w
-// = 2 m off it. A long wall of height h with exitance M gives E(x) = M / 2 (1 - x / sqrt(x^2 +
-// h^2)) at distance x, with the integral M / 2 (x - sqrt(x^2 + h^2)): the mean over the pixel is
-// ten times the value at its centre. A wall of 100 m lacks less than (w / 50)^2 of that; the wall
-// gets back less than rho / 4 of M. In one case a black speck close to the camera covers the middle
-// fifth of the pixel, across and down. In another, under a black roof at 30 m, few of the centre's
-// rays meet the wall, and the first ones may miss it. The pixel's value must be the same in all
-// cases.
+// The middle pixel of 3 x 3 looks straight down on a dark floor from the foot of a sunlit wall to
+// w = 2 m off it. A long wall of height h with exitance M gives
+// E(x) = M / 2 (1 - x / sqrt(x^2 + h^2)) at distance x, with the integral
+// M / 2 (x - sqrt(x^2 + h^2)): the mean over the pixel is ten times the value at its centre. A wall
+// of 100 m lacks less than (w / 50)^2 of that; the wall gets back less than rho / 4 of M. In one
+// case a black speck close to the camera covers the middle fifth of the pixel, across and down. In
+// another, under a black roof at 30 m, few of the centre's rays meet the wall, and the first ones
+// may miss it. The pixel's value must be the same in all cases.
 enum class With { Nothing, Speck, Roof };
 class PixelMean : public ::testing::TestWithParam<With> {};
 

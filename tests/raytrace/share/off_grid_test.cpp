@@ -166,8 +166,7 @@ class Row {
       written.off_grid_points[k] = {static_cast<std::uint32_t>(k), no_base, 0, 1.0F};
       first_.push_back(static_cast<std::uint32_t>(k));
       for (std::size_t q = k < 3 ? 0 : k - 3; q <= std::min(count - 1, k + 3); ++q) {
-        masks_[k] |= std::uint64_t{1}
-                     << (24 + q - k);  // the off-grid point is the middle of 7 x 7
+        masks_[k] |= std::uint64_t{1} << (24 + q - k);  // the off-grid point is the middle of 7 x 7
       }
     }
     first_.push_back(static_cast<std::uint32_t>(count));

@@ -47,10 +47,10 @@ TEST(Share, NoiseFallsAndNoLessIsStated) {
   EXPECT_LT(stated, 0.5 / 8.0);
 }
 
-// A detail of signal s and noise q with the gain c = s' / (s' + q), s' = s - 0.3 q, leaves (1 -
-// c)^2 s + c^2 q; here s = 2 q, c = 17 / 27. The signal of a finer detail with gain 0 is limited to
-// the range from 0 to that signal. An off-grid point has no coarser details, and a detail with a
-// positive gain keeps its signal: s = 200, q = 100.
+// A detail of signal s and noise q with the gain c = s' / (s' + q), s' = s - 0.3 q, leaves
+// (1 - c)^2 s + c^2 q; here s = 2 q, c = 17 / 27. The signal of a finer detail with gain 0 is
+// limited to the range from 0 to that signal. An off-grid point has no coarser details, and a
+// detail with a positive gain keeps its signal: s = 200, q = 100.
 TEST(Share, WhatNoiseHidesIsNoMoreThanCoarserDetailsHold) {
   Shared shared;
   shared.resize(4);
@@ -65,9 +65,9 @@ TEST(Share, WhatNoiseHidesIsNoMoreThanCoarserDetailsHold) {
   EXPECT_NEAR(shared.squared_error_with(3, 1.0), 101.0 * coarser, 1e-4);
 }
 
-// A signal from N = 8 details has the standard error sqrt(2 / 8) q, of which 0.7 is subtracted: s'
-// = 2 - 0.3 - 0.35 = 1.35 and c = 1.35 / 2.35 for s = 2, q = 1. Stein's term, 4 (s + q) (1 - c)^2 /
-// N, is added to the remaining error.
+// A signal from N = 8 details has the standard error sqrt(2 / 8) q, of which 0.7 is subtracted:
+// s' = 2 - 0.3 - 0.35 = 1.35 and c = 1.35 / 2.35 for s = 2, q = 1. Stein's term,
+// 4 (s + q) (1 - c)^2 / N, is added to the remaining error.
 TEST(Share, WhatFewDetailsSayIsDoubtedMore) {
   Shared shared;
   shared.resize(1);
@@ -157,8 +157,8 @@ TEST(Share, WhatKeepsAllOfItsOwnStillTellsNoiseByOthers) {
   EXPECT_NEAR(mean, 1.0 / 24.0, 4.0 * std::sqrt(7.0 / 2880.0 / count));
 }
 
-// A point without neighbours has only its own two halves: for 0 and 1 the variance is (0 - 1)^2 /
-// 4.
+// A point without neighbours has only its own two halves: for 0 and 1 the variance is
+// (0 - 1)^2 / 4.
 TEST(Share, WhatIsAloneTellsItsNoiseByItsHalves) {
   std::vector<GatherPoint> points = flat();
   for (std::size_t p = 1; p < count; ++p) points[p].reach_m = -1.0F;

@@ -42,8 +42,9 @@ void expect_none(const std::vector<double>& values) {
 
 TEST(Signals, ASmoothPictureStatesLittleThatNoiseMayHide) {
   // Noise only. Each window's signal has the standard error sigma = q sqrt(2 / N), 100 details; its
-  // positive part, sigma / sqrt(2 pi) on average, would be stated. The mean of the plane's 48^2 /
-  // 100 windows has an error of a fifth of that, and so has the remaining share of each window.
+  // positive part, sigma / sqrt(2 pi) on average, would be stated. The mean of the plane's
+  // 48^2 / 100 windows has an error of a fifth of that, and so has the remaining share of each
+  // window.
   constexpr int fields = 50;
   const Neighbours neighbours(window, flat());
   double found = 0.0, stated = 0.0, alone = 0.0;

@@ -91,10 +91,10 @@ TEST(SharedSamples, WhatBothHalvesFindIsKept) {
   EXPECT_NEAR(walls.sharing().rays(5), 32.0, 1e-9);
 }
 
-// One patch has 5 lx, all have noise of variance 1. Its difference from the wall's mean is d =
-// 15/16 of 5; d^2 minus four times its noise gives s = 18, and it keeps s / (s + 1) of d, 4.75 in
-// all. With the common s = d^2 / 16 of the wall's patches it would keep 3. The mean of 64 rooms has
-// a standard error of 1/8, and one room in ten keeps less by chance.
+// One patch has 5 lx, all have noise of variance 1. Its difference from the wall's mean is
+// d = 15/16 of 5; d^2 minus four times its noise gives s = 18, and it keeps s / (s + 1) of d, 4.75
+// in all. With the common s = d^2 / 16 of the wall's patches it would keep 3. The mean of 64 rooms
+// has a standard error of 1/8, and one room in ten keeps less by chance.
 TEST(SharedSamples, ABrightPatchAmongDarkOnesStaysBright) {
   Walls walls;
   std::mt19937 random(2);

@@ -216,8 +216,8 @@ TEST(SmallSources, TheSunsImageInAFlatMirrorIsOne) {
   expect_sum(builder.scene, camera, 0.8 * sun.illuminance_lx.g * px * px, every_way().back());
 }
 
-// A plate whose lobe of exponent n mirrors the Sun within a hundredth of a pixel's solid angle: L =
-// E cos k_s cos^n(alpha) / pi, over all directions 2 pi / (n + 1).
+// A plate whose lobe of exponent n mirrors the Sun within a hundredth of a pixel's solid angle:
+// L = E cos k_s cos^n(alpha) / pi, over all directions 2 pi / (n + 1).
 TEST(SmallSources, AHighlightSmallerThanAPixelIsOne) {
   tests::SceneBuilder builder;
   scenes::Material glossy = tests::grey(0.0);

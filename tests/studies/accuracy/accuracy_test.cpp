@@ -47,10 +47,10 @@ TEST(PictureError, NoiseOfTheReferencesIsTakenOff) {
   EXPECT_LT(error.high, 0.1);
 }
 
-// The same without the variances. The standard error equals the spread over many pairs, d sqrt(x) =
-// dx / (2 sqrt(x)). L has an error of 0.2 in every pixel, and each reference has random errors of
-// this size. The square, 0.04, has the standard error sqrt((2 + 1) 0.2^4 / 400) and is never
-// clamped at 0.
+// The same without the variances. The standard error equals the spread over many pairs,
+// d sqrt(x) = dx / (2 sqrt(x)). L has an error of 0.2 in every pixel, and each reference has random
+// errors of this size. The square, 0.04, has the standard error sqrt((2 + 1) 0.2^4 / 400) and is
+// never clamped at 0.
 TEST(PictureError, WithoutVariancesThePairTellsItsNoise) {
   constexpr std::size_t few = 400, pairs = 400;
   const auto unknown = [](std::uint64_t seed) {

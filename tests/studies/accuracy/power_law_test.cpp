@@ -47,10 +47,10 @@ TEST(PowerLaw, FloorIsFoundAndDoesNotSpoilTheExponent) {
   EXPECT_NEAR(law->error_at(4.0), std::hypot(0.5 * std::pow(4.0, -0.7), 0.01), 1e-6);
 }
 
-// Least squares on a line with noise s of ln e: the slope's standard error is s / sqrt(sum (t -
-// mean t)^2); for t = k ln 4, k = 0..9, the sum is 82.5 ln^2 4. Estimated from the residuals it has
-// a chi-square distribution of 8 degrees of freedom: over 400 draws the mean of its square is s^2 /
-// 82.5 ln^2 4 with the relative error sqrt(2 / 8 / 400) = 2.5 %.
+// Least squares on a line with noise s of ln e: the slope's standard error is
+// s / sqrt(sum (t - mean t)^2); for t = k ln 4, k = 0..9, the sum is 82.5 ln^2 4. Estimated from
+// the residuals it has a chi-square distribution of 8 degrees of freedom: over 400 draws the mean
+// of its square is s^2 / 82.5 ln^2 4 with the relative error sqrt(2 / 8 / 400) = 2.5 %.
 TEST(PowerLaw, StandardErrorIsThatOfTheSlope) {
   constexpr int draws = 400;
   constexpr double noise = 0.1;

@@ -103,8 +103,8 @@ TEST(LeastExtent, AngleIsThatBetweenTheRaysToItsEnds) {
 }
 
 TEST(Eye, ThresholdsAreThoseOfThePublishedLaw) {
-  // x = 2: 10^(2 - 1.255); x = -5: 10^-2.86; x = -1: rods, 10^(-1 - 0.395); x = 0: cones, 0.65^2.7
-  // - 0.72 = -0.40749.
+  // x = 2: 10^(2 - 1.255); x = -5: 10^-2.86; x = -1: rods, 10^(-1 - 0.395); x = 0: cones,
+  // 0.65^2.7 - 0.72 = -0.40749.
   EXPECT_NEAR(threshold_difference(100.0), std::pow(10.0, 0.745), 1e-9);
   EXPECT_NEAR(threshold_difference(1e-5), std::pow(10.0, -2.86), 1e-9);
   EXPECT_NEAR(threshold_difference(0.1), std::pow(10.0, -1.395), 1e-9);

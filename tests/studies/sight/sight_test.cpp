@@ -230,8 +230,8 @@ TEST(Sight, PicturesOfAnotherSizeAreRefused) {
 }
 
 // Standard errors of 5 and of 0 for the difference from the surround, 20 cd/m^2. By eye and by
-// CCTV, the verdicts at the bounds equal the verdicts of pictures with the difference times 1 -+
-// 1.96 / 4; without an error both equal the verdict itself.
+// CCTV, the verdicts at the bounds equal the verdicts of pictures with the difference times
+// 1 -+ 1.96 / 4; without an error both equal the verdict itself.
 TEST(Sight, BoundsOfAVerdictAreVerdictsAtTheEndsOfTheDifferencesInterval) {
   const auto disc = [](double contrast) {
     return discs_on(40.0, {{60.0, 60.0, 3.0, 40.0 + 20.0 * contrast}}, disc_edge, disc_edge);

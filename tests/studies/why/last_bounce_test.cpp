@@ -20,8 +20,8 @@ double share_from(const std::vector<LightShare>& shares, const std::string& from
 
 // A unit cube whose walls all emit M and reflect rho = 0.5: B = M / (1 - rho) everywhere. Of this,
 // M is a point's own light, rho M is light straight from the walls, and rho (B - M) is reflected by
-// them. From the centre of the floor the ceiling has F = 4 / (2 pi) 2 x / sqrt(1 + x^2) atan(x /
-// sqrt(1 + x^2)), x = 1/2: 0.2394, and each of the other walls a quarter of the rest.
+// them. From the centre of the floor the ceiling has F = 4 / (2 pi) 2 x / sqrt(1 + x^2)
+// atan(x / sqrt(1 + x^2)), x = 1/2: 0.2394, and each of the other walls a quarter of the rest.
 TEST(LastBounce, InAFurnaceSharesAreFormFactors) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5, 1.0));
