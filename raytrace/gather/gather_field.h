@@ -125,11 +125,12 @@ class GatherField {
   // Sums over the image layers.
   [[nodiscard]] const glm::vec3& diffuse_sum(std::size_t point) const { return sums_[0][point]; }
   [[nodiscard]] const glm::vec3& lobe_sum(std::size_t point) const { return sums_[1][point]; }
-  // Incident radiance, a factor of k_d, cd/m^2: image layers, then light straight from the sky.
+  // Incident radiance, to be multiplied by k_d, cd/m^2: image layers, then light straight from the
+  // sky.
   [[nodiscard]] std::span<const glm::vec3> diffuse(std::size_t point) const {
     return {&diffuse_[point * layers_], layers_};
   }
-  // Incident radiance, a factor of k_s: image layers. Empty without a gathered lobe.
+  // Incident radiance, to be multiplied by k_s: image layers. Empty without a gathered lobe.
   [[nodiscard]] std::span<const glm::vec3> lobe(std::size_t point) const;
 
   [[nodiscard]] int step() const { return setting_.step; }

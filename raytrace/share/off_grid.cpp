@@ -142,7 +142,7 @@ void share_among_mirror_neighbours(const MirrorNeighbourhood& mirror_neighbours,
   base::parallel_chunks(off_grid_points, 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       float count = 0.0F, all = 0.0F, of_sample = 0.0F;
-      double off = 0.0, squared = 0.0;  // mean and mean square of the difference from its own value
+      double off = 0.0, squared = 0.0;  // sums of differences from its own value, and of squares
       each(k, [&](std::size_t mirror_neighbour) {
         const double from_own =
             double(estimate.mean(grid + mirror_neighbour)) - double(estimate.mean(grid + k));

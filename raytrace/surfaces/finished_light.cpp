@@ -16,7 +16,7 @@ constexpr double unexplained = 6.0;  // standard errors
 
 // Scales the indirect light so that energy is conserved: B = M + rho (E0 + k I), with one k per
 // column that solves
-//   sum A ((a - rho) k I + B (escape + lost)) = sum A (M + rho E0)
+//   sum A ((a - rho) k I + B (escape + lost)) = sum A (M + rho E0).
 // A defect of the samples in this sum is noise. Without balanced rows, k is unknown and not
 // applied. Returns the change of the mean radiosity by k, relative, in luminance.
 double LightOnSurfaces::close_energy(radiosity::PatchLight& found) const {
