@@ -12,12 +12,12 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr double one_sided_95 = 1.645;
-constexpr int tile_px = 32;  // samples are shared no further than about that
-// Tiles' squares are most often small and now and then large, so that their spread, found from
-// some of them, is too small as a rule (docs/validation.md).
+constexpr int tile_px = 32;  // denoising hardly correlates errors over larger distances
+// Squares of tiles are mostly small and seldom large, so that a sample of tiles underestimates
+// their spread (docs/validation.md).
 constexpr double unseen_spread = 1.5;
 
-// Over the mean square, the bound of it that holds 95 times of 100.
+// Ratio of the 95 % bound of the mean square to the mean square.
 double bound_ratio(const StatedError& stated, const std::vector<std::size_t>& pixels, int columns) {
   const ErrorSums whole = add_up(stated, pixels);
   if (whole.squared_error() <= 0.0) return 1.0;
@@ -37,7 +37,7 @@ double bound_ratio(const StatedError& stated, const std::vector<std::size_t>& pi
     sum += value;
     squares += value * value;
   }
-  // Of one tile nothing is known: as if its error were all in one place.
+  // A single tile has no spread: assume that all of the error is in one place.
   if (count < 2.0) return 1.0 + one_sided_95 * unseen_spread;
   const double spread =
       std::sqrt(std::max(0.0, squares - sum * sum / count) * count / (count - 1.0));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The error of a picture, part by part, as its own samples state it (raytrace/frame/frame.h).
 //
-// An error is the root mean square difference of luminance to the picture that all light paths but
-// those of not_captured would make, over the pixels that show a surface that reflects and no edge
-// of a source itself, relative to their mean luminance; light straight from a source is left out,
-// and pixels brighter than four times the mean count in proportion (error_weight).
+// The error is the root mean square difference of luminance to the picture with all light paths but
+// those in not_captured, over the pixels that show a reflecting surface and no edge of a source,
+// relative to their mean luminance. Light straight from a source is omitted. Pixels brighter than
+// four times the mean have reduced weight (error_weight).
 #pragma once
 
 #include <array>
@@ -19,23 +19,23 @@
 namespace earthshine::raytrace {
 
 struct ErrorParts {
-  ErrorEstimate gather;           // rays over the hemisphere, and what sharing them blurs
-  ErrorEstimate interreflection;  // what the solution lacks, found by paths: their noise and blur
-  ErrorEstimate lobes;            // the same of rays over Phong lobes
+  ErrorEstimate gather;           // rays over the hemisphere: noise and blur
+  ErrorEstimate interreflection;  // residual paths: noise and blur
+  ErrorEstimate lobes;            // rays over Phong lobes: noise and blur
   ErrorEstimate camera_samples;   // edges, lamps, the lens, mirrors and glass
 };
 
 struct TargetError {
   std::string name;
-  std::size_t pixels = 0;  // seen
-  double luminance = 0.0;  // their mean, cd/m^2
-  ErrorEstimate error;     // as of the whole picture, over the target's pixels and their mean
+  std::size_t pixels = 0;  // visible
+  double luminance = 0.0;  // mean, cd/m^2
+  ErrorEstimate error;     // as total, over the pixels of the target, relative to their mean
 };
 
 struct ErrorBudget {
   ErrorEstimate total;
   ErrorParts parts;
-  std::size_t pixels = 0;  // that the errors are over; 0: no surface is seen or all are black
+  std::size_t pixels = 0;  // number of pixels in the mean; 0: no lit surface is visible
   std::vector<TargetError> targets;
   std::vector<std::string> not_captured;
 };
@@ -45,12 +45,10 @@ struct WatchedPicture {
   RenderOptions options;
 };
 
-// What `frame`, drawn so, states. Its 95 % bound is that of a mean square known from some tiles of
-// the picture: 1.645 standard errors of their mean above it.
+// The stated errors of `frame`, drawn with these options. The 95 % bound is 1.645 standard errors
+// of the mean square above the mean square; tiles of the picture give the standard error.
 [[nodiscard]] ErrorBudget error_budget(const scenes::World& scene, const WatchedPicture& picture,
                                        const Frame& frame);
-
-// Which pixels of a picture show what.
 
 // The pixels of the picture's window whose centre shows an object, by ascending number
 // row * columns + column in the whole picture.
@@ -61,7 +59,7 @@ class SurfacePixels {
 
   [[nodiscard]] const std::vector<std::uint32_t>& all() const { return all_; }
   [[nodiscard]] std::vector<std::uint32_t> of_object(std::uint32_t object) const;
-  // Where a pixel stands in images of the window.
+  // Index of a pixel in images of the window.
   [[nodiscard]] std::size_t in_window(std::uint32_t pixel) const;
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 

@@ -18,7 +18,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Image layers, then parts, of one pixel: its own sums and what it reads from gather points.
+// Image layers, then parts, of one pixel: its own sums and the light from gather points.
 void pixel_radiance(const Sampled& sampled, std::size_t pixel, std::vector<Rgb>& out) {
   const PixelSums& sums = sampled.sums;
   const double n = sums.samples[pixel];
@@ -38,7 +38,7 @@ void pixel_radiance(const Sampled& sampled, std::size_t pixel, std::vector<Rgb>&
       out[k] += diffuse * Rgb(radiance[k]);
       if (by_part) part(mirrored ? Part::Specular : Part::Indirect) += diffuse * Rgb(radiance[k]);
     }
-    if (by_part && !mirrored) {  // what came straight from the sky is no interreflection
+    if (by_part && !mirrored) {  // light straight from the sky is direct
       part(Part::Direct) += diffuse * Rgb(radiance[layers]);
       part(Part::Indirect) -= diffuse * Rgb(radiance[layers]);
     }
@@ -51,8 +51,8 @@ void pixel_radiance(const Sampled& sampled, std::size_t pixel, std::vector<Rgb>&
   }
 }
 
-// What pixels read from gather points goes into their own sums, as means, and the points are let
-// go: with many layers they take as much memory as all else.
+// Adds the light of gather points to the pixels' sums, which become means, and frees the points:
+// with many layers they take as much memory as everything else.
 void fold_field(Sampled& sampled) {
   PixelSums& sums = sampled.sums;
   const auto columns = static_cast<std::size_t>(sums.window.columns);
@@ -70,7 +70,7 @@ void fold_field(Sampled& sampled) {
   base::give_back_freed_memory(sums.radiance.size() * sizeof(glm::vec3));
 }
 
-// Of the rows in the window, with places that are pixels of it.
+// The rows in the window, with places that are pixels of the window.
 LayerNoise in_window(const LayerNoise& noise, const Window& window, int columns) {
   const std::size_t layers = noise.place.empty() ? 0 : noise.off.size() / noise.place.size();
   LayerNoise inside;
@@ -96,7 +96,7 @@ std::vector<LayerNoise> noise_by_part(const Sampled& sampled, const Window& wind
   return noise;
 }
 
-// Once the field is folded in.
+// To be called after fold_field().
 std::vector<double> layer_luminance(const PixelSums& sums, const StatedError& error) {
   std::vector<double> mean(sums.image_layers, 0.0);
   double pixels = 0.0;
@@ -184,7 +184,7 @@ Frame render(const scenes::World& world, const radiosity::Solution& solution,
     frame.layers.thin(layer_noise_step(window.pixel_count()));
   }
   fold_field(sampled);
-  // Not before: with many layers it is as large as what is sampled.
+  // Allocated late: with many layers the image is as large as the samples.
   frame.image = base::make_rgb_image(window.columns, window.rows);
   const Layout layout = with_layers(frame.image);
   fill_layers(sums, frame.error, layout, frame.image);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scene + solution + camera -> frame. Who carries which light path (each by exactly one strategy):
+// Scene + solution + camera -> frame. Each kind of light path is carried by exactly one strategy:
 //
 //   source seen by the camera itself       emission, sky radiance, lamp surfaces
 //   lamps of every type;                   shadow rays (diffuse and Phong lobe)
@@ -26,10 +26,9 @@
 
 namespace earthshine::raytrace {
 
-// `solution` may be empty (default-constructed) unless indirect is Radiosity. A crop has the very
-// pixels that the whole picture has there.
-// Throws base::Error (Input) for an unknown AOV name or [[area]], or a crop that leaves the
-// picture.
+// `solution` may be empty (default-constructed) unless indirect is Radiosity. A crop has the same
+// pixels as the whole picture there. Throws base::Error (Input) for an unknown AOV name or
+// [[area]], or a crop that leaves the picture.
 [[nodiscard]] Frame render(const scenes::World& world, const radiosity::Solution& solution,
                            const scenes::Camera& camera, const RenderOptions& options,
                            const Progress& progress = {});

@@ -11,18 +11,19 @@
 namespace earthshine::raytrace::tuning {
 
 // --- Allocation: prices (adaptive/sample_plan.cpp) ---
-// Times over that of a gather ray in a packet, measured on the payload bay. Too small a price draws
-// samples of that kind beyond their share.
+// Cost of a ray, or sample, over the cost of a gather ray in a packet, measured on the payload bay.
+// Too low a price draws too many samples of that kind.
 inline constexpr double ray_cost = 1.5;       // a camera sample's ray
 inline constexpr double path_ray_cost = 1.7;  // a ray of a residual path or of a lobe
 inline constexpr double camera_cost = 3.0;    // a camera sample without its rays
 // Least reduction of squared error per ray, over the mean so far: more spares rays on rough
-// predictions but needs more rounds. The second one is in force where none exceeds the first.
+// predictions but needs more rounds. The second one applies if no gain exceeds the first.
 inline constexpr double least_gain = 0.2, least_gain_of_all = 1e-6;
 // Samples up to which a pixel's own variance is not trusted: more spends samples beside noisy
 // pixels, fewer leaves bias where samples agree by chance.
 inline constexpr double unsure_samples = 4.0;
-// Pixels of one sample count that tell the gain of even samples; with fewer, all pixels do.
+// Least number of pixels with one sample count for the variance reduction by stratification; with
+// fewer, all pixels are used.
 inline constexpr std::size_t few_pixels_of_class = 64;
 
 // --- Allocation: rounds (adaptive/allocator.cpp) ---
@@ -36,9 +37,9 @@ inline constexpr double fine_error = 0.04;
 // rounds leave the errors that look too small. The true error is 0.89 to 1.08 of the stated one at
 // 5 % on the payload bay, up to 1.1 at 2 %.
 inline constexpr double stop_fraction_of_coarse = 0.94, stop_fraction_of_fine = 0.9;
-// Fraction of it that rounds aim at: less overshoots, more needs a further round.
+// Fraction of the wanted error that rounds aim at: less overshoots, more needs a further round.
 inline constexpr double planned_share = 0.873;
-static_assert(planned_share < stop_fraction_of_fine);  // or it would plan for what it refuses
+static_assert(planned_share < stop_fraction_of_fine);  // or rounds would not end
 // Confidence of that decision, in standard errors of the squared error (90 %, one-sided): more is
 // surer of the wanted error; costs 0.6 to 5 % of the rays.
 inline constexpr double one_sided_90 = 1.2816;
@@ -60,9 +61,8 @@ inline constexpr std::size_t most_layers_for_eye = 8;
 inline constexpr int initial_camera_samples = 4;
 
 // --- Time limits and stops (adaptive/adaptive_render.cpp, gather/initial_samples.cpp) ---
-// Time to reserve for the rest of a picture, over the time that finding the gather points took
-// (measured: 6 by day, 9 by night), and over that of denoising: less overruns a limit, more wastes
-// it.
+// Time to reserve for the rest of a picture, over the time for finding the gather points (measured:
+// 6 by day, 9 by night), and over the denoising time: less overruns a limit, more wastes it.
 inline constexpr double after_points = 9.0, after_denoising = 4.0;
 // One pixel of a square of 2 * reach + 1 is sampled after a stop, px; more leaves blur.
 inline constexpr int stop_reach_px = 2;
@@ -76,13 +76,13 @@ inline constexpr float chance_margin = 0.7F;  // of sqrt(2 / N) q
 // Blurs of a window of squares; the first one is left out for all but single pixels' details. More
 // make steadier gains over wider surroundings, a fifth of the denoising time each.
 inline constexpr std::size_t window_blurs = 3;
-// Random-sign fields that tell noise, and how far off a signal is: more are steadier, each takes
-// about a tenth of the denoising time. Eight bits a point hold both.
+// Random-sign fields for the noise, and for the standard error of the signal: more are steadier,
+// each takes about a tenth of the denoising time. Eight bits per point are enough for both.
 inline constexpr std::size_t noise_fields = 4, scatter_fields = 3;
 // Cosine between normals of one surface (25 degrees), and the slope by which a neighbour may leave
 // the tangent plane: wider shares more and blurs over bends.
 inline constexpr float least_surface_cosine = 0.906F, most_surface_slope = 0.22F;
-// Edge of the regions whose off-grid and isolated points are alike, px: larger is steadier, less
+// Edge of the regions for statistics of off-grid and isolated points, px: larger is steadier, less
 // local.
 inline constexpr std::size_t region_px = 8;
 // Neighbourhood of a point seen in a mirror, px in each direction; at most 3, the bits of 64.
@@ -99,8 +99,8 @@ inline constexpr double least_mirror = 0.01;
 // Cosine between normals within which a lobe may be read (10 degrees): wider blurs highlights.
 inline constexpr float lobe_cosine = 0.985F;
 // Cosine between normals of neighbouring pixels beyond which rays start all over the pixel (2
-// degrees): the mean of a lobe of exponent n is off by n 2^2 / (6 57^2) of its peak, 0.4 % of n =
-// 20.
+// degrees): the mean of a lobe of exponent n is wrong by n 2^2 / (6 57^2) of its peak, 0.4 % for
+// n = 20.
 inline constexpr float turning_cosine = 0.99939F;
 // Footprint over mean ray length from which on rays start all over the pixel: less costs camera
 // rays, more misses gradients at contacts.
@@ -111,39 +111,41 @@ inline constexpr float next_pixel_radius = 3.0F;
 inline constexpr std::size_t gather_rays_per_aimed = 16;
 
 // --- Camera samples (shade/) ---
-// Relative standard deviation, and contrast, from which on a pixel gets samples for the eye: the
-// first of four samples, the second of eight; less costs samples, more shows stairs.
+// Relative standard deviation of a neighbour's samples from which on a pixel gets two times, and
+// four times the samples for the eye. The first is also the least contrast of an edge. Less costs
+// samples, more shows stairs.
 inline constexpr double most_scatter = 1.0 / 3.0, most_of_eight = 1.414 * most_scatter;
-// Error that an edge may keep, of its brighter side.
+// Allowed error at an edge, relative to its brighter side.
 inline constexpr double edge_for_eye = 0.02;
 // Luminance below which contrasts do not count, over the picture's mean.
 inline constexpr double dimmest_share = 0.05;
-// Pixels of one sample count that tell their error together; with fewer, all pixels do.
+// Least number of pixels with one sample count for a common error estimate; with fewer, all pixels
+// are used.
 inline constexpr std::size_t few_pixels = 64;
-// Own gather rays of a sample without a gather point, and of one behind a mirror or glass.
+// Gather rays of a sample without a gather point, and of one behind a mirror or glass.
 inline constexpr int rays_without_point = 2, rays_behind_mirror = 2;
 // First samples of a sliver that read a neighbour's point: more blurs, fewer leaves lone pixels.
 inline constexpr std::size_t samples_beside = 16;
 // Rays of a sharp lobe per camera sample.
 inline constexpr int lobe_rays = 4;
-// Mirrors and glass passed before Russian roulette, and its survival at most: less is noisier.
+// Mirrors and glass before Russian roulette, and its largest survival probability: less is noisier.
 inline constexpr int roulette_depth = 3;
 inline constexpr double most_survival = 0.95;
 
 // --- Paths (paths/) ---
 // Share of rays off diffuse surfaces that are aimed at bright patches: 0.05 to 0.2 is as good.
 inline constexpr double aimed_share = 0.25;
-// Least survival of a residual path: less costs fewer rays, more finds what a wrong solution
-// hides.
+// Least survival probability of a residual path: less costs fewer rays, more finds light that a
+// wrong solution lacks.
 inline constexpr double least_survival = 0.05;
 // Bounces from which on this share of residual paths survives each doubling of their length: bounds
 // their mean at 640; fewer bounces are noisier in rooms that reflect nearly everything.
 inline constexpr int long_walk = 128;
 inline constexpr double long_walk_survival = 0.4;
-// Path tracer: weight down to which paths surely continue; more is faster and noisier.
+// Path tracer: weight down to which paths always continue; more is faster and noisier.
 inline constexpr double sure_weight = 0.25;
-// Bounces from which on every path ends some time. The odds are so small that the variance stays
-// finite up to reflectances of 0.9999^(1/2).
+// Bounces after which paths may always end. The probability is so small that the variance is finite
+// up to reflectances of 0.9999^(1/2).
 inline constexpr int long_path = 1000;
 inline constexpr double long_path_survival = 0.9999;
 
@@ -152,70 +154,70 @@ inline constexpr double long_path_survival = 0.9999;
 inline constexpr double bright_ratio = 16.0;
 
 // --- Lights (light/) ---
-// Lamps up to which all get shadow rays: choosing among fewer costs more than it saves.
+// Number of lamps up to which all get shadow rays: a selection would cost more than it saves.
 inline constexpr std::size_t few_lamps = 32;
-// Share of the light above which a lamp surely gets a shadow ray: less has less noise, more rays.
+// Share of the light above which a lamp always gets a shadow ray: less has less noise, more rays.
 inline constexpr double smallest_share = 1.0 / 16.0;
-// Sets that the Suns of a sky in parts are divided into, a power of two: more saves shadow rays of
-// paths, each Sun is noisier.
+// Strata of the Suns of a sky in parts, a power of two: more saves shadow rays of paths, but each
+// Sun is noisier.
 inline constexpr std::size_t most_sun_sets = 4;
-// Distance of a lamp in footprints up to which a second place is drawn. Farther off illuminance
-// varies by half within the footprint at most.
+// Distance of a lamp, in footprints, up to which a second point is sampled. Farther away the
+// illuminance varies by at most half within the footprint.
 inline constexpr double near_lengths = 2.0;
-// Cosine of the view below which that is left out: the plane ends within the pixel.
+// Cosine of the view below which there is no second point: the plane ends within the pixel.
 inline constexpr double flattest = 0.05;
-// Rays that look for the plane, at most.
+// Most rays to find a hit on the plane.
 inline constexpr int most_footprint_rays = 256;
 
-// --- Witness: spots that are listed (witness/images.cpp, spot_map.cpp) ---
-// Image from which on camera samples meet a source without help, px^2.
+// --- Witness: listed spots (witness/images.cpp, spot_map.cpp) ---
+// Image area from which on camera samples find a source without the witness, px^2.
 inline constexpr double large_px2 = 1.0;
-// Phong exponent of a highlight that is listed; blunter ones exceed the bodies that show them.
+// Least Phong exponent of a listed highlight; wider ones exceed the bodies that show them.
 inline constexpr double least_shininess = 50.0;
 // Squared standard deviations beyond which a lobe is dark.
 inline constexpr double most_deviations2 = 16.0;
-// Pairs of facets and emitting triangles that are tried: more costs time in large meshes.
+// Most pairs of facets and emitting triangles: more costs time in large meshes.
 inline constexpr double most_pairs = 4e6;
-// Part of a spot that a pixel must have, over the largest that any has, along an axis.
+// Least part of a spot in a pixel, over the largest part in any pixel, along an axis.
 inline constexpr double least_part = 1.0 / 32.0;
 
 // --- Witness: strips (witness/strip_width.h, source_strips.cpp, light_strips.cpp) ---
-// Width from which on a strip is none, px.
+// Largest width of a strip, px.
 inline constexpr double wide_px = 1.0;
-// Where a strip may end, over that width, and bisections after: rays per strip.
+// Trial widths over wide_px, and bisections after them: rays per strip.
 inline constexpr std::array<double, 4> strip_places = {1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0, 1.0};
 inline constexpr int strip_bisections = 4;
-// Steps along edges, px, places beside them, px, and steps in all: rays.
+// Steps along edges, px, distance of probes beside them, px, and most steps: rays.
 inline constexpr double step_px = 0.5, beside_px = 5e-4;
 inline constexpr std::size_t most_probes = 16384;
-// Corners of a round rim; mirrors and panes on the way to a source.
+// Corners of a round rim; most mirrors and panes on the way to a source.
 inline constexpr int round_corners = 32, most_bounces = 8;
-// Panes before a strip of light; parts that it is followed in, and their length, px.
+// Most panes in front of a strip of light; most parts of a strip, and their length, px.
 inline constexpr int most_panes = 8, most_parts = 64;
 inline constexpr double part_px = 0.5;
 // Radius of a source over the scene's diagonal beyond which its strips are not sharp.
 inline constexpr double widest = 0.05;
 
-// --- Witness: samples it asks for (witness/witness.cpp, source_edges.cpp) ---
-// Samples that should hit a spot, least and most: more is surer of it.
+// --- Witness: samples (witness/witness.cpp, source_edges.cpp) ---
+// Expected samples on a spot, least and most: more give more confidence.
 inline constexpr double fewest_hits = 16.0, most_hits = 64.0;
-// Share of the wanted error that spots may leave, and that a source's rim may have.
+// Share of the wanted error for unsampled spots, and for a source's rim.
 inline constexpr double noise_share = 0.25, source_share = 1.0 / 3.0;
 // Samples of a pixel without the witness.
 inline constexpr double few_samples = 4.0;
-// Luminance of a spot that is listed, over the light that counts in a pixel.
+// Least light of a listed spot in a pixel, over the wanted error times the mean luminance.
 inline constexpr double least_of_spot = 0.01;
-// Coverage of a pixel from which on a spot is none.
+// Coverage of a pixel from which on it needs no samples for spots.
 inline constexpr double most_coverage = 0.999;
-// Samples of one pixel; of the picture, or a pixel, if these are more; at most.
+// Most samples of one pixel; of the picture, the larger of a total and a number per pixel.
 inline constexpr double most_for_one = 65536.0;
 inline constexpr double witness_samples = 1048576.0, witness_per_pixel = 4.0;
-// And of the time that a limit leaves.
+// Most of the remaining time of a limit.
 inline constexpr double time_for_witness = 0.25;
-// Share of the expected light below which samples have not found a spot: surfaces may hide a part
-// of it, so more states false alarms.
+// Share of the expected light below which samples have missed a spot: surfaces may hide a part of
+// it, so that more causes false alarms.
 inline constexpr double found_share = 0.125;
-// Samples of a pixel at the edge of a source that the camera sees, and the contrast of such an
+// Samples of a pixel at the edge of a visible source, least and most, and least contrast of such an
 // edge.
 inline constexpr std::uint32_t fewest_at_source = 64, most_at_source = 1024;
 inline constexpr double least_contrast = 1.0 / 3.0;

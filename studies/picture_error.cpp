@@ -19,7 +19,8 @@ struct Sums {
 
   double whole_mean = 0.0;  // of the truth, for the weights
 
-  // d1, d2: one difference found twice, with independent noise; v1, v2: its variances, or none.
+  // d1, d2: two measurements of a difference with independent noise; v1, v2: their variances, if
+  // known.
   void add(double d1, double d2, double truth, std::optional<Variances> v) {
     ++pixels;
     const double weight = std::pow(raytrace::error_weight(truth, whole_mean), 2);
@@ -29,7 +30,7 @@ struct Sums {
     if (v) {
       const double v1 = weight * v->first, v2 = weight * v->second;
       variance += weight * d1 * d2 * (v1 + v2) + v1 * v2;
-      // The square of the difference is known from the product alone, which may come out negative.
+      // The square of the difference is only known from the product, which may be negative.
       least_ += v1 * v2;
     } else {
       variance += std::pow(weight * (d1 + d2) / 2.0 * (d1 - d2), 2);

@@ -65,7 +65,7 @@ void check(const base::Image& image, const std::vector<std::string>& groups,
           std::max(off, std::abs(sum[p] - double(whole->values[p])) - rounding * std::abs(sum[p]));
       mean += std::abs(sum[p]) / double(sum.size());
     }
-    // Not "off > ...": a NaN is no sum either.
+    // Not "off > ...": NaN must fail, too.
     if (off <= rounding * mean) continue;
     throw Error(Blame::Input, source,
                 fmt::format("its light layers do not add up to {}: {:.3g} cd/m2 are missing",

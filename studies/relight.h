@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture of other lamp settings from one that was rendered with a layer per light group: light
-// adds up, so that any dimming, failure or combination is a weighted sum of the layers.
+// A picture with other lamp settings, from a picture with a layer per light group: light is
+// additive, so that any dimming, failure or combination is a weighted sum of the layers.
 #pragma once
 
 #include <map>
@@ -14,11 +14,11 @@ namespace earthshine::studies {
 // Groups that have a layer "light_<group>" of R, G and B, in the order of the channels.
 [[nodiscard]] std::vector<std::string> lit_groups(const base::Image& image);
 
-// Multiplies the layers of the groups named by their factors and makes R, G and B the sum of all
-// layers. Layers that are not a sum over lights (geometry, object numbers, Cryptomatte) stay; those
-// that the weights make untrue (direct, indirect, specular, variance) go unless all factors are 1.
-// source: what errors name. Throws base::Error (Input): no layers; a group without one (with those
-// that there are); layers that do not add up to the picture, within 1e-4 of its mean; no R, G, B.
+// Multiplies the layers of the named groups by their factors and sets R, G and B to the sum of all
+// layers. Layers that are no sum over lights (geometry, object numbers, Cryptomatte) stay. Layers
+// that become wrong (direct, indirect, specular, variance) are removed unless all factors are 1.
+// source: for error messages. Throws base::Error (Input): no layers; a group without one (with the
+// existing groups); layers that do not add up to the picture, within 1e-4 of its mean; no R, G, B.
 void relight(base::Image& image, const std::map<std::string, Rgb>& factors,
              const std::string& source);
 

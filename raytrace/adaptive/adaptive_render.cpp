@@ -72,7 +72,7 @@ class AdaptiveRender {
   [[nodiscard]] bool stops() const { return options_.stop && options_.stop(); }
   [[nodiscard]] bool ends() const { return stops() || out_of_time(); }
 
-  // Whether all gather points have initial samples.
+  // Returns whether all gather points have initial samples.
   bool sample_initial() {
     const auto start = Clock::now();
     if (shared_.gathers) begin_field();
@@ -101,7 +101,7 @@ class AdaptiveRender {
     return covered;
   }
 
-  // False: there is nothing more to sample.
+  // False if no further samples are needed or affordable.
   bool sample_round(std::uint32_t round) {
     const SampleCosts each = sample_costs(field());
     SamplePlanner planner(*sums_, field(), each);
@@ -126,7 +126,7 @@ class AdaptiveRender {
 
   void finish() {
     report_.gave_up = allocator_.gave_up();
-    // Rounds denoise the sum of all layers; each layer follows here.
+    // Rounds denoise the sum of all layers only; now each layer.
     if (field_ && allocator_.has_rounds() && shared_.layers > 1) denoise(true);
     if (field_) report_.rays += field_->rays();
     if (witness_) {
@@ -182,7 +182,7 @@ class AdaptiveRender {
     report_.gather_rays = static_cast<int>(std::lround(rays / std::max(1.0, points)));
   }
 
-  // Fewer where no edge is near: only shadows and highlights vary there.
+  // Interior pixels get fewer samples: only shadows and highlights vary there.
   [[nodiscard]] std::vector<std::uint32_t> by_edges(int near, int interior) const {
     const Window& window = sums_->window;
     std::vector<std::uint32_t> samples(sums_->samples.size(), static_cast<std::uint32_t>(near));
@@ -195,9 +195,9 @@ class AdaptiveRender {
     return samples;
   }
 
-  // After a stop, pixels that were not reached get two samples all the same, which state an error.
-  // Where no edge is near, that is one pixel of four; the others get one sample and take their
-  // error from the pixel with two (PixelSums::squared_error).
+  // After a stop, pixels without samples get two, which give an error estimate. In interior regions
+  // one pixel of four gets two; the others get one sample and take the error of that pixel
+  // (PixelSums::squared_error).
   void shade_initial(const std::vector<std::uint32_t>& samples) {
     report_.least_camera_samples = static_cast<int>(*std::ranges::min_element(samples));
     shade(samples);
@@ -216,7 +216,8 @@ class AdaptiveRender {
         [&](std::uint64_t samples) { add_progress(static_cast<double>(samples)); });
   }
 
-  // Samples. Fixed numbers have no bound, so that a crop has the pixels of the whole.
+  // Most samples for the witness. Fixed numbers have no limit, so that a crop has the pixels of the
+  // whole picture.
   [[nodiscard]] double most_for_witness() const {
     const double pixels = static_cast<double>(camera_.columns) * camera_.rows;
     double most = options_.error > 0.0
@@ -234,7 +235,8 @@ class AdaptiveRender {
     return std::max(1.0, most > 0.0 ? std::min(most, in_time) : in_time);
   }
 
-  // Light that few samples find. With fixed numbers, only as far as a crop finds the same.
+  // Samples for light that few samples find. With fixed numbers, only light that a crop finds
+  // alike.
   void shade_witnessed() {
     if (ends()) return;
     const bool fixed = !allocator_.has_rounds();
@@ -260,13 +262,13 @@ class AdaptiveRender {
   const Progress& progress_;
   RenderReport& report_;
   Allocator allocator_;
-  std::vector<std::uint8_t> noted_;  // of the picture's pixels: 1 in the regions
+  std::vector<std::uint8_t> noted_;  // per pixel of the picture: 1 in the regions
   std::optional<GatherField> field_;
   std::optional<PixelSums> sums_;
   std::optional<Witness> witness_;
   Clock::time_point start_ = Clock::now();
-  double reserve_s_ = 0.0;    // of the time limit, for the steps that have to follow
-  double denoising_s_ = 0.0;  // seconds of the last denoising
+  double reserve_s_ = 0.0;    // share of the time limit for the remaining steps
+  double denoising_s_ = 0.0;  // duration of the last denoising
   bool covered_ = true;       // the initial samples are complete
   double done_ = 0.0, expected_ = 0.0;
 };

@@ -9,15 +9,15 @@
 
 namespace earthshine::raytrace {
 
-// The samples of a picture: the sums of the window's pixels; the gather points of the whole
+// The samples of a picture: sums over the pixels of the window, and the gather points of the whole
 // picture, if there are any.
 struct Sampled {
   PixelSums sums;
   std::optional<GatherField> field;
 };
 
-// Sets `field` in `shared`; fills the report's rays and the seconds at gather points. All but the
-// options and the report must outlive what is returned.
+// Sets `field` in `shared`, and the rays and the seconds at gather points in the report. All
+// arguments but the options and the report must outlive the result.
 [[nodiscard]] Sampled sample_picture(ShadingScene& shared, const PathWorld& world,
                                      const CameraModel& camera, const RenderOptions& options,
                                      const Progress& progress, RenderReport& report);

@@ -49,16 +49,16 @@ std::optional<SamplePlan> Allocator::next(SamplePlanner& planner, double so_far,
     gave_up_ = true;
     return {};
   }
-  // Step by step: what few samples say of more of them is rough.
+  // Small steps, because predictions from few samples are rough.
   const double step = std::max(aimed, now / tuning::most_step);
-  // No more than samples that are spread as so far would take.
+  // At most the cost by the law error^2 ~ 1/samples with the current distribution.
   const double most =
       std::min(affordable, std::max(tuning::least_step, now / aimed - 1.0) * so_far);
   SamplePlan plan = planner.plan(step, most);
-  // A few points that turned out bad cost next to nothing: what is worst beside them goes along.
+  // A plan for a few noisy points costs next to nothing: add the next worst ones up to `fewest`.
   const double fewest = std::min(most, tuning::least_step * so_far);
   if (plan.cost < 0.5 * fewest) plan = planner.plan(aimed, fewest);
-  // A single point's next step may be larger than that.
+  // The next step of a single point may cost more.
   if (plan.cost <= 0.0) plan = planner.plan(aimed, affordable);
   if (plan.cost <= 0.0) return {};
   return plan;
@@ -73,7 +73,7 @@ double Allocator::growth(SamplePlanner& planner, double so_far) const {
   const double now = planner.squared_error(), aimed = squared_aim(planner.confidence_factor());
   if (now <= aimed || so_far <= 0.0) return 1.0;
   const SamplePlan plan = planner.plan(aimed, std::numeric_limits<double>::infinity());
-  // A plan gives a point four times its samples at most: beyond, as the square of the error.
+  // A plan at most quadruples a point's samples; beyond, samples grow as the squared error falls.
   return (1.0 + plan.cost / so_far) * std::max(1.0, plan.squared_error / aimed);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which samples a picture gets: the initial ones and, unless their numbers are fixed, those of each
-// round until the stated error is as wanted.
+// Distribution of samples over a picture: initial samples, then rounds until the stated error is
+// reached. Fixed numbers need no rounds.
 #pragma once
 
 #include <array>
@@ -14,55 +14,55 @@
 namespace earthshine::raytrace {
 
 struct InitialSampling {
-  // Per gather point.
+  // Samples per gather point.
   std::uint32_t gather_rays = tuning::initial_gather_rays;
   std::uint32_t paths = tuning::initial_paths, lobe_rays = tuning::initial_lobe_rays;
   bool every_second = false;  // GatherField::sample_initial()
-  // Camera samples of a pixel at an edge, and of one whose surroundings show one surface.
+  // Camera samples of a pixel at an edge, and of an interior pixel.
   int camera = tuning::initial_camera_samples, interior = tuning::initial_camera_samples / 2;
-  // By Gathered.
+  // Indexed by Gathered.
   [[nodiscard]] std::array<std::uint32_t, gathered_kinds> field() const {
     return {gather_rays, paths, lobe_rays};
   }
 };
 
-// Fraction of the wanted error at which rounds end, once there was one: samples go where errors
-// look largest, so that those which look too small by chance stay so (measured values in tuning.h).
-// A coarse error has the larger fraction: a further round for a hundredth of the samples takes a
-// twentieth of the time.
+// Fraction of the wanted error at which rounds end after the first one. It corrects a selection
+// effect: samples go where errors look largest, and errors that look too small by chance remain
+// (measured values in tuning.h). Coarse errors have the larger fraction, because a further round
+// for a hundredth of the samples takes a twentieth of the time.
 [[nodiscard]] double stop_fraction(double wanted);
 
 class Allocator {
  public:
-  // wanted: relative to the mean luminance; 0: as small as can be.
+  // wanted: RMS error relative to the mean luminance; 0: as small as possible.
   [[nodiscard]] static Allocator to_error(double wanted) { return Allocator(wanted); }
   // The same numbers everywhere and no rounds. Half as many paths and lobe rays as gather rays.
   [[nodiscard]] static Allocator fixed(int gather_rays, int camera_samples);
 
   [[nodiscard]] bool has_rounds() const { return !fixed_; }
   // Above an error of 4 %, or without one, half as many gather rays and paths, and no samples at
-  // every second point of smooth regions: that suffices for smooth pictures, and for others it
-  // directs further samples as well (payload bay, 5 %; at 3 % it does not). A picture of few
-  // `points` gets more paths, for light that few of them find.
+  // every second point of smooth regions. This suffices for smooth pictures and directs further
+  // samples well in others (payload bay: at 5 %, but not at 3 %). A picture with few `points` gets
+  // more paths per point, because too few paths may miss light.
   [[nodiscard]] InitialSampling initial(std::size_t points) const;
-  // The next round. so_far, affordable: cost of the samples so far, and what more may cost (rays of
-  // a packet). Empty: the numbers are fixed, the error is reached, no samples can be afforded, or
-  // gave_up().
+  // The next round. so_far, affordable: cost of the samples so far, and the most that further
+  // samples may cost (rays of a packet). Empty if the numbers are fixed, the error is reached, no
+  // samples can be afforded, or gave_up().
   [[nodiscard]] std::optional<SamplePlan> next(SamplePlanner& planner, double so_far,
                                                double affordable);
-  // Far more samples than the error should have taken have not brought it much down.
+  // Whether far more samples than the error should take have hardly reduced it.
   [[nodiscard]] bool gave_up() const { return gave_up_; }
-  // Samples in all, over those so far, by the last statement alone.
+  // Predicted ratio of all samples to the samples so far, from the last stated error alone.
   [[nodiscard]] double growth() const;
-  // The same by where they would go.
+  // The same ratio, from the plan of the next samples.
   [[nodiscard]] double growth(SamplePlanner& planner, double so_far) const;
 
-  // A statement after samples of that cost, with its confidence factor (ErrorSums).
+  // Stated error after samples of that cost, with its confidence factor (ErrorSums).
   struct Statement {
     double cost = 0.0, error = 0.0, confidence_factor = 1.0;
   };
-  // Whether the last statement comes after 1024 times the samples of one whose error it has not
-  // halved: known noise would fall to a thirty-second, but initial samples may miss most of it.
+  // Whether 1024 times the samples have not halved a stated error. Noise alone would fall to 1/32,
+  // but the initial samples may have missed most of it.
   [[nodiscard]] static bool is_hopeless(const std::vector<Statement>& statements);
 
  private:

@@ -15,20 +15,19 @@ namespace {
 constexpr auto camera_kind = static_cast<std::uint8_t>(gathered_kinds);
 constexpr int bisections = 24;
 constexpr double greatest_price = 1e6;      // squared error per ray
-constexpr std::size_t sample_classes = 33;  // of pixels, by the powers of two of their samples
+constexpr std::size_t sample_classes = 33;  // of pixels, by powers of two of their samples
 constexpr std::size_t items_at_once = 4096;
 
 std::size_t class_of(std::uint32_t samples) {
   return static_cast<std::size_t>(std::bit_width(samples));
 }
 
-// Of an edge that is as likely in a pixel as in its neighbour, and as likely anywhere in it: the
-// square of the share beyond it, f, where n samples miss it, none where they do not, in the mean:
-// the integral of f^2 (1 - f)^n / 2.
+// Expected square of the share f of a pixel beyond an edge that all n samples miss. An edge is in
+// the pixel with probability 1/2, at a uniform position: the integral of f^2 (1 - f)^n / 2.
 double share_missed(double n) { return 1.0 / ((n + 1.0) * (n + 2.0) * (n + 3.0)); }
 
-// How samples of some pixels scatter: their means' squared errors, and what these would be if the
-// samples were independent.
+// Scatter of the samples of some pixels: squared errors of their means as stated, and for
+// independent samples.
 struct Scatter {
   std::size_t pixels = 0;
   double found = 0.0, independent = 0.0;
@@ -107,8 +106,8 @@ void SamplePlanner::append_gains(std::size_t count, const Fill& fill) {
   });
 }
 
-// Points that stand alone are told by likely noise; of what more samples take off it a plan counts
-// on no more than they state themselves.
+// For isolated points the likely noise directs the samples (variance_prior). The plan expects no
+// more reduction than their own stated error confirms.
 void SamplePlanner::find_field_gains(double scale) {
   const Window& window = sums_.window;
   const double pixels = field_->step() * field_->step();  // that read a point
@@ -122,7 +121,7 @@ void SamplePlanner::find_field_gains(double scale) {
       if (!window.contains(x, y)) return {};
       const double reflected = field_->reflected(kind, p);
       if (reflected <= 0.0) return {};
-      // Points that others served until now have the fewest to begin with.
+      // Points without own samples start with the fewest.
       const float samples = std::max(field_->samples(kind, p), fewest);
       const double weight =
           stated_.weight(window.index(x, y), whole_.luminance) * reflected * field_->cover_of(p);
@@ -151,10 +150,11 @@ void SamplePlanner::find_field_gains(double scale) {
   }
 }
 
-// Samples of a pixel have its own deviation, but few of them may miss what they seldom meet: what
-// covers less than one of n is told by the noisiest of the pixels around, and by what they differ
-// by: samples of a pixel may agree for want of the one beyond an edge. What the halves of pixels
-// with as many samples differ by tells how much less these scatter than if they were independent.
+// The variance of a pixel is the largest of three estimates. Its own samples give the first. The
+// noisiest neighbour gives the second, because few samples may miss what covers less than 1/n of
+// the pixel. The contrast to the neighbours gives the third, as if all samples missed an edge. The
+// half differences of pixels with equal sample counts give the variance reduction by stratified
+// samples.
 void SamplePlanner::find_pixel_gains(double scale) {
   const Window& window = sums_.window;
   std::vector<double> variance(stated_.luminance.size());  // of one sample, weighted
@@ -243,8 +243,8 @@ SamplePlan SamplePlanner::plan(double wanted, double most_cost) {
     plan.field[k].assign(field_->points().size(), 0U);
   }
   plan.camera = sums_.samples;
-  // The price of a ray at which the picture is just exact enough; the less it is, the more are
-  // cast.
+  // Bisection for the price of a ray at which the picture is just accurate enough. A lower price
+  // gives more samples.
   const std::span<const Gain> gains(gains_.get(), gain_count_);
   double all = 0.0;
   for (const Gain& gain : gains) all += double(gain.cost);
@@ -253,7 +253,7 @@ SamplePlan SamplePlanner::plan(double wanted, double most_cost) {
   const bool any = outcome(gains, tuning::least_gain * mean_gain).cost > 0.0;
   double low = std::log((any ? tuning::least_gain : tuning::least_gain_of_all) * mean_gain);
   double high = std::log(greatest_price);
-  std::vector<Gain> worth;  // at the least price; most are not
+  std::vector<Gain> worth;  // worth the lowest price; most are not
   std::ranges::copy_if(gains, std::back_inserter(worth), [&](const Gain& gain) {
     return gain.factor(static_cast<float>(std::exp(low))) > 1;
   });
@@ -275,7 +275,7 @@ SamplePlan SamplePlanner::plan(double wanted, double most_cost) {
       continue;
     }
     plan.field_cost += cost;
-    // Twice as many by as many again; four times by four times, as sets are powers of two.
+    // Doubling adds the number so far. Four times adds four times, as sets are powers of two.
     plan.field[gain.kind][gain.index] =
         static_cast<std::uint32_t>(gain.samples) * (times == 4 ? 4U : 1U);
   }

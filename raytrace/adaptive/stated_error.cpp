@@ -11,10 +11,10 @@
 namespace earthshine::raytrace {
 namespace {
 
-constexpr double rounding = 1e-6;  // of sums in single precision
+constexpr double rounding = 1e-6;  // relative, of sums in single precision
 
-// Adds up what the pixel reads from gather points, and their errors: those of one kind are taken as
-// going the same way.
+// Adds up the light that the pixel reads from gather points, and its errors. Errors of one kind are
+// assumed fully correlated.
 class FieldOfPixel {
  public:
   FieldOfPixel(const PixelSums& sums, const GatherField& field, std::size_t pixel) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a picture says of its own error, pixel by pixel, from the samples that it is made of.
+// The stated error of a picture, per pixel, estimated from its own samples.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace earthshine::raytrace {
 
-// What the window shows without sources that the camera sees itself, and how far off it may be.
-// Single pixels are stated by few samples and scatter; sums over many are right.
+// Luminance of the window without sources that the camera sees itself, and its squared errors.
+// Single pixels have few samples, so that their errors scatter; sums over many pixels are right.
 [[nodiscard]] StatedError state_error(const PixelSums& sums, const GatherField* field);
 
 }  // namespace earthshine::raytrace

@@ -12,14 +12,14 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr std::size_t ray_count = 96;
-// Meshes with pinholes are meant to be closed; half a body (winding 0.5) is not.
+// Meshes with pinholes count as closed; half a body (winding number 0.5) does not.
 constexpr double least_winding = 0.95;
 
 bool back_is_black(const scenes::Material& material) {
   return !material.two_sided && base::max_component(material.transmit) <= 0.0;
 }
 
-// Fibonacci points: even over the sphere, and along no axis or diagonal where edges like to lie.
+// Fibonacci points: uniform on the sphere, and on no axis or diagonal, where edges often are.
 Vec3 direction(std::size_t k) {
   const double z = 1.0 - (2.0 * static_cast<double>(k) + 1.0) / ray_count;
   const double phi = 2.0 * base::pi * static_cast<double>(k) / std::numbers::phi;

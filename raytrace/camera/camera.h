@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixel to ray: pinhole or thin lens.
+// Camera rays: pinhole or thin lens.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct Window {
   [[nodiscard]] std::size_t pixel_count() const {
     return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   }
-  // Of a pixel of the picture that lies in the window.
+  // Index in the window of a pixel of the picture.
   [[nodiscard]] std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row - y) * static_cast<std::size_t>(columns) +
            static_cast<std::size_t>(column - x);
@@ -31,7 +31,7 @@ struct Window {
   }
 };
 
-// The camera's frame and the half size of its picture at unit distance.
+// The camera's axes and the half size of its picture at unit distance.
 struct CameraModel {
   Vec3 position{0.0}, forward{0.0}, right{0.0}, up{0.0};
   double half_width = 0.0, half_height = 0.0;  // tangents of the half fields of view
@@ -39,26 +39,24 @@ struct CameraModel {
   double lens_radius_m = 0.0;                  // 0: pinhole
   int columns = 0, rows = 0;
 
-  // (x, y) in pixels from the top left corner, so that the centre of pixel (i, j) is (i + 0.5, j +
-  // 0.5); (lens_u, lens_v) in [0,1)^2 choose the point of the lens.
+  // (x, y) in pixels from the top left corner: the centre of pixel (i, j) is (i + 0.5, j + 0.5).
+  // (lens_u, lens_v) in [0,1)^2 determine the point of the lens.
   [[nodiscard]] Ray ray(double x, double y, double lens_u, double lens_v) const;
 
-  // Through a point of the lens (of a pinhole the position): the direction of (x, y), of unit
-  // length; where a point in front of the camera is seen, px; and how many px^2 a square metre
-  // there is.
+  // For a point of the lens (the position of a pinhole): the unit direction of (x, y); the film
+  // position of a point in front of the camera, px; and px^2 per m^2 of a surface there.
   [[nodiscard]] Vec3 direction_from(const Vec3& on_lens, double x, double y) const;
   [[nodiscard]] glm::dvec2 film_from(const Vec3& on_lens, const Vec3& point) const;
   [[nodiscard]] double film_per_m2(const Vec3& on_lens, const Vec3& point,
                                    const Vec3& normal) const;
 };
 
-// Square pixels; fov_deg is the vertical field whatever the size of the picture.
+// Square pixels; fov_deg is the vertical field for any size of the picture.
 [[nodiscard]] CameraModel make_camera_model(const scenes::Camera& camera, int columns, int rows);
 
-// A camera as the matrices that other programs expect, so that positions can be projected into its
-// picture and pixels cast back into the scene.
-
-// Pixels count from the picture's top left corner: the centre of the first one is (0.5, 0.5).
+// A camera as the matrices of other programs, to project positions into its picture and to cast
+// pixels back into the scene. Pixels count from the picture's top left corner: the centre of the
+// first one is (0.5, 0.5).
 struct CameraMatrices {
   // Computer vision: axes x right, y down, z forward; points are columns; matrices row by row.
   //   (u w, v w, w) = K (x, y, z)      camera (m) to pixels; K = fx 0 cx  0 fy cy  0 0 1
@@ -74,24 +72,22 @@ struct CameraMatrices {
   double screen_window_width = 1.0;  // of the picture at distance 1
 };
 
-// Of a pinhole; of a lens, its centre.
+// For a lens, from its centre.
 [[nodiscard]] CameraMatrices camera_matrices(const CameraModel& camera);
 
-// Is the camera somewhere from which there is something to see?
-
-// How often the surface of an object winds around a point, counting its opaque one-sided triangles:
-// 1 inside a closed body, 0 outside it, -1 inside a closed room (fronts inward), between them for
-// open surfaces. The sum of signed solid angles over 4 pi (van Oosterom and Strackee 1983,
-// equation 8), so that it needs no ray and no tolerance.
+// Winding number of an object's opaque one-sided triangles around a point: 1 inside a closed body,
+// 0 outside, -1 inside a closed room (fronts inward), in between for open surfaces. The sum of
+// signed solid angles over 4 pi (van Oosterom and Strackee 1983, equation 8) needs no rays and no
+// tolerance.
 [[nodiscard]] double winding_number(const scenes::Scene& scene, std::uint32_t object,
                                     const Vec3& point);
 
-// Throws base::Error (Input), at the camera's place in the scene file and naming the object, if the
-// camera stands inside a body whose backs are black:
-//   every ray from it meets the back of an opaque one-sided surface first, or
-//   one closed object winds around it and at least half of its rays meet that object's back first.
-// A closed room (fronts inward, or two-sided walls), a hull with a lining, an open bay and the
-// inside of glass are all places to look from. The rays go to fixed directions over the sphere.
+// Throws base::Error (Input), with the camera's place in the scene file and the object's name, if
+// the camera is inside a body with black backs:
+//   every ray from it first meets the back of an opaque one-sided surface, or
+//   one closed object winds around it and at least half of its rays first meet that object's back.
+// Valid positions include a closed room (fronts inward, or two-sided walls), a hull with a lining,
+// an open bay and the inside of glass. The rays have fixed directions over the sphere.
 void check_camera(const scenes::Scene& scene, const scenes::RayQuery& query,
                   const scenes::Camera& camera);
 

@@ -6,11 +6,11 @@ namespace {
 
 using scenes::FilterShape;
 
-constexpr int inverse_steps = 1024;   // of the table that Newton's steps start from
-constexpr int most_newton_steps = 8;  // one or two are enough except in the outermost step
-constexpr double newton_end = 1e-7;   // of the width; the last step squares it
+constexpr int inverse_steps = 1024;   // of the table of start values for Newton's method
+constexpr int most_newton_steps = 8;  // one or two suffice except in the outermost interval
+constexpr double newton_end = 1e-7;   // of the width; convergence is quadratic
 
-// Share of the filter below x, for a width of 1; only smooth shapes. Not normalised to the ends.
+// Integral of the filter up to x, for a width of 1; only smooth shapes. Not normalised.
 double smooth_share(FilterShape shape, double x) {
   if (shape == FilterShape::Gaussian) return std::erf(6.0 * x / std::sqrt(2.0));
   const double t = 2.0 * base::pi * x;
@@ -29,7 +29,7 @@ double smooth_density(FilterShape shape, double x) {
           0.01168 * (4.0 * c * c - 3.0) * c);
 }
 
-// The place of each even step of the lower half's share.
+// Positions of equal steps of the integral in the lower half.
 std::vector<double> invert(FilterShape shape) {
   const double low = smooth_share(shape, -0.5);
   std::vector<double> inverse(inverse_steps + 1);
@@ -66,7 +66,7 @@ double PixelFilter::at(double u) const {
     case FilterShape::BlackmanHarris:
       break;
   }
-  // The filter is symmetric: the upper half is the lower one's mirror image.
+  // The filter is symmetric: the upper half mirrors the lower one.
   const double lower = std::clamp(std::min(u, 1.0 - u), 0.0, 0.5);
   const double place = 2.0 * lower * inverse_steps;
   const auto cell = static_cast<std::size_t>(std::min(place, inverse_steps - 1.0));

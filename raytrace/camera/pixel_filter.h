@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where in and around a pixel its camera rays go: offsets drawn from the filter itself, so that
+// Positions of camera rays in and around a pixel. Offsets are drawn from the filter itself, so that
 // every sample has weight 1 and a pixel is the plain mean of its samples.
 #pragma once
 
@@ -13,8 +13,8 @@
 
 namespace earthshine::raytrace {
 
-// Separable, symmetric, never negative; w is the full width of its support in pixels, x in
-// [-w/2, w/2]:
+// Separable, symmetric, never negative; w is the full width of its support in pixels, x in [-w/2,
+// w/2]:
 //   Box             1
 //   Triangle        1 - 2|x|/w
 //   Gaussian        exp(-x^2 / (2 s^2)), s = w/6: cut at three standard deviations
@@ -26,11 +26,11 @@ class PixelFilter {
   explicit PixelFilter(const scenes::Camera& camera)
       : PixelFilter(camera.filter, camera.filter_width_px) {}
 
-  // (u, v) in [0, 1]^2, each carried by an increasing function, so that stratified points stay
-  // stratified. Pixels from the pixel's centre, x to the right and y down. The box of width 1 gives
-  // (u - 0.5, v - 0.5) exactly.
+  // Offset from the pixel's centre in pixels, x to the right and y down. An increasing function
+  // maps each of (u, v) in [0, 1]^2, so that stratified points stay stratified. The box of width 1
+  // gives (u - 0.5, v - 0.5) exactly.
   [[nodiscard]] std::array<double, 2> offset(double u, double v) const { return {at(u), at(v)}; }
-  // How many of these offsets are there, of all, per px^2.
+  // Probability density of the offsets, 1/px^2.
   [[nodiscard]] double density(const glm::dvec2& offset) const {
     return density_at(offset.x) * density_at(offset.y);
   }
@@ -42,11 +42,11 @@ class PixelFilter {
 
   scenes::FilterShape shape_;
   double width_px_;
-  std::vector<double> inverse_;  // x / w, see invert(); of the smooth shapes
+  std::vector<double> inverse_;  // x / w, see invert(); for the smooth shapes
 };
 
-// Where in a pixel and on the lens its camera samples lie: even and odd ones are two independent
-// sets, each of low discrepancy.
+// Camera samples of a pixel, on film and lens: even and odd ones are two independent sets of low
+// discrepancy.
 class PixelPoints {
  public:
   PixelPoints(std::uint64_t seed, std::uint64_t pixel)

@@ -13,12 +13,12 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr std::size_t edges_per_chunk = 64;
-constexpr int halvings = 4;          // of a probe's step of 1 px
-constexpr double margin_px = 1.0;    // around the picture
-constexpr double near_share = 1e-6;  // of the edge's length: what is behind the camera is cut there
-constexpr double least_stretch_px = 1.5;  // of an edge that is hidden elsewhere
-constexpr double depth_slack_px = 1;      // widths of a pixel that an occluder must be in front
-constexpr double offset_slack = 4.0;      // or offsets of rays from points on the edge
+constexpr int halvings = 4;               // of a probe's step of 1 px
+constexpr double margin_px = 1.0;         // around the picture
+constexpr double near_share = 1e-6;       // of the edge's length: clipping distance from the camera
+constexpr double least_stretch_px = 1.5;  // of a partly hidden edge
+constexpr double depth_slack_px = 1;      // pixel widths that an occluder must be in front
+constexpr double offset_slack = 4.0;      // or this many ray offsets from points on the edge
 
 // ---- edges of the surface
 
@@ -64,7 +64,7 @@ std::vector<Side> sides_of(const scenes::Scene& scene) {
   return sides;
 }
 
-// Nothing for an edge inside a flat face.
+// Empty for an edge inside a flat face.
 std::optional<FeatureEdge> classify(const scenes::Scene& scene, std::span<const Side> sides,
                                     double crease_cosine) {
   const scenes::Triangle& first = scene.triangles[sides[0].triangle];
@@ -82,7 +82,7 @@ std::optional<FeatureEdge> classify(const scenes::Scene& scene, std::span<const 
   return edge;
 }
 
-// ---- what the camera sees of them
+// ---- visible parts of edges
 
 // In camera axes: right, up, forward.
 Vec3 to_camera(const CameraModel& camera, const Vec3& p) {
@@ -122,7 +122,7 @@ class Prober {
   }
 
  private:
-  // Cuts off what is not in front of the camera. (a_, b_): the ends in camera axes.
+  // Clips parts behind the camera. (a_, b_): the ends in camera axes.
   bool in_front() {
     a_ = to_camera(camera_, edge_.from);
     b_ = to_camera(camera_, edge_.to);
@@ -133,8 +133,8 @@ class Prober {
     return true;
   }
 
-  // Cuts to the picture and its margin (Liang and Barsky 1984). (first_, last_): ends in pixels;
-  // (a_, b_) keep to them.
+  // Clips to the picture and its margin (Liang and Barsky 1984), together with (a_, b_). (first_,
+  // last_): ends in pixels.
   bool in_picture() {
     const glm::dvec2 p = pixel(a_), q = pixel(b_);
     double t0 = 0.0, t1 = 1.0;
@@ -163,8 +163,7 @@ class Prober {
             (1.0 - p.y / p.z / camera_.half_height) * 0.5 * camera_.rows};
   }
 
-  // The point of the edge from a to b that is seen at the share t of its picture: 1/z runs
-  // linearly there.
+  // The point of the edge from a to b at the fraction t of its image: 1/z is linear there.
   [[nodiscard]] static Vec3 in_space(const Vec3& a, const Vec3& b, double t) {
     const double share = t * a.z / (t * a.z + (1.0 - t) * b.z);
     return a + share * (b - a);
@@ -182,7 +181,7 @@ class Prober {
     query_.set(rays, lane, camera_.position, direction, std::max(0.0, distance - slack));
   }
 
-  // Between a visible and a hidden place, as far toward the hidden one as is known to be visible.
+  // Bisects between a visible and a hidden position; returns the farthest visible one.
   [[nodiscard]] double edge_of_sight(double visible, double hidden) const {
     for (int k = 0; k < halvings; ++k) {
       const double middle = 0.5 * (visible + hidden);
@@ -194,7 +193,7 @@ class Prober {
   }
 
   void append(double t0, double t1, std::vector<WireSegment>& out) const {
-    // A hidden edge shows for a moment where it runs into a visible corner (depth_slack_px).
+    // A hidden edge appears visible for a short distance next to a visible corner (depth_slack_px).
     const bool cut = t0 > 0.0 || t1 < 1.0;
     if (cut && (t1 - t0) * glm::length(last_ - first_) < least_stretch_px) return;
     const glm::dvec2 p = first_ + t0 * (last_ - first_), q = first_ + t1 * (last_ - first_);

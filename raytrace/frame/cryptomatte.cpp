@@ -11,7 +11,7 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Four bytes, the lowest first, whatever the machine's own order.
+// Little-endian on every machine.
 std::uint32_t block_at(std::string_view bytes, std::size_t at, std::size_t count = 4) {
   std::uint32_t block = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -157,7 +157,7 @@ namespace {
 
 constexpr std::uint32_t least_samples = 16;
 
-// The points are those of shade_samples.
+// Uses the sample positions of shade_samples().
 void cover(const scenes::RayQuery& query, const CameraModel& camera, const PixelFilter& filter,
            const PixelPoints& points, int x, int y, std::uint32_t count,
            CryptomatteWriter& writer) {

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cryptomatte: which objects, or materials, cover a pixel, and how much of it, so that compositing
-// programs pick anti-aliased mattes by name. Specification 1.2.0 of Psyop:
-//   id        MurmurHash3_x86_32 of the name's bytes (UTF-8), seed 0, as the bits of a float; with
-//             bit 23 turned over where that would be denormal, infinite or not a number
+// Cryptomatte: the objects, or materials, that cover a pixel, and their coverages, so that
+// compositing programs select anti-aliased mattes by name. Specification 1.2.0 of Psyop:
+//   id        MurmurHash3_x86_32 of the name's bytes (UTF-8), seed 0, as the bits of a float;
+//             bit 23 is inverted if the float would be denormal, infinite or not a number
 //   layers    <type>00.R id of rank 0, .G its coverage, .B id of rank 1, .A its coverage; <type>01
 //             ranks 2 and 3, <type>02 ranks 4 and 5; larger coverage first
-//   preview   <type>.R/G/B: colours made of the ids, mixed by coverage; some readers count on it
-// Coverage is the share of the pixel's camera samples, a sample that meets nothing having no id:
-// the coverages of a pixel sum to 1 minus the share of the sky, unless more than six ids meet in
-// it.
+//   preview   <type>.R/G/B: colours from the ids, mixed by coverage; some readers require it
+// Coverage is the share of the pixel's camera samples. A sample without a hit has no id: the
+// coverages of a pixel sum to 1 minus the share of the sky, unless more than six ids meet in it.
 #pragma once
 
 #include <array>
@@ -27,7 +26,7 @@ namespace earthshine::raytrace {
 // Appleby's MurmurHash3_x86_32.
 [[nodiscard]] std::uint32_t murmur3_32(std::string_view bytes, std::uint32_t seed = 0);
 
-// The bits of a name's id. Names of one hash share their matte.
+// The bits of a name's id. Names with the same hash share their matte.
 [[nodiscard]] std::uint32_t cryptomatte_id(std::string_view name);
 [[nodiscard]] std::string eight_hex_digits(std::uint32_t bits);
 
@@ -41,8 +40,8 @@ using CryptomattePixel = std::array<float, cryptomatte_channel_count>;
 class CoverageRanks {
  public:
   void add(std::uint32_t id, double weight);
-  // Shares of `whole`, the weight of all samples of the pixel, also of those that met nothing; then
-  // begins anew. Equal coverages: the smaller id first, so that the order of samples does not
+  // Coverages as shares of `whole`, the weight of all samples of the pixel, with or without hits;
+  // then resets. Equal coverages: the smaller id first, so that the order of samples does not
   // matter.
   [[nodiscard]] CryptomattePixel take(double whole);
 
@@ -54,7 +53,7 @@ class CoverageRanks {
   std::vector<Cover> covers_;
 };
 
-// What a type's ids are taken from.
+// The source of a type's ids.
 enum class CryptomatteOf { Object, Material };
 struct CryptomatteType {
   const char* aov;
@@ -69,8 +68,8 @@ inline constexpr std::array<CryptomatteType, 2> cryptomatte_types{
 [[nodiscard]] std::vector<std::string> cryptomatte_names(const scenes::Scene& scene,
                                                          CryptomatteOf of);
 
-// The Cryptomatte channels of a picture being rendered: those of cryptomatte_types() that `image`
-// has. One for all threads; the image's channels may not move while it lives.
+// The Cryptomatte channels of a picture during rendering: the cryptomatte_types() in `image`. One
+// for all threads; the image's channels must stay at their addresses.
 class CryptomatteLayers {
  public:
   CryptomatteLayers(const scenes::Scene& scene, base::Image& image);
@@ -87,13 +86,13 @@ class CryptomatteLayers {
   std::vector<Type> types_;
 };
 
-// Fills them pixel by pixel; one object per thread.
+// Fills the channels pixel by pixel; one object per thread.
 class CryptomatteWriter {
  public:
   explicit CryptomatteWriter(const CryptomatteLayers& layers);
-  // A camera sample that met `triangle`, or scenes::no_triangle.
+  // A camera sample that hit `triangle`, or scenes::no_triangle.
   void add(std::uint32_t triangle, double weight = 1.0);
-  // Writes the pixel and begins the next.
+  // Writes the pixel and begins the next one.
   void store(std::size_t pixel);
 
  private:
@@ -102,17 +101,17 @@ class CryptomatteWriter {
   double whole_ = 0.0;
 };
 
-// The camera samples that a window of a picture was made of.
+// The camera samples of a window of a picture.
 struct CoverageSamples {
   std::uint64_t seed = 1;
   Window window;
-  const std::vector<std::uint32_t>& counts;  // per pixel of it; 0: not finished
+  const std::vector<std::uint32_t>& counts;  // per pixel of the window; 0: not finished
   const PixelFilter& filter;
 };
 
-// Fills the Cryptomatte channels that `image`, the window, has, by casting the picture's own
-// camera samples once more, at least sixteen for each finished pixel. (How many a pixel has is
-// known only in the end, and rays without light are cheap.) Returns the rays cast.
+// Fills the Cryptomatte channels of `image`, the window. Casts the picture's camera samples again,
+// at least sixteen per finished pixel, because the number of samples of a pixel is known only at
+// the end. Rays without light are cheap. Returns the number of rays.
 std::uint64_t fill_cryptomatte(const scenes::Scene& scene, const scenes::RayQuery& query,
                                const CameraModel& camera, const CoverageSamples& samples,
                                base::Image& image);

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far off a value may be that was found by chance.
+// The statistical error of an estimate.
 #pragma once
 
 #include <cmath>
 
 namespace earthshine::raytrace {
 
-// A part of an error, relative to the mean of what it is an error of.
+// A part of an error, relative to the mean of the erroneous quantity.
 struct ErrorEstimate {
   double estimate = 0.0;  // root mean square
-  double bound_95 = 0.0;  // exceeded once in twenty times
+  double bound_95 = 0.0;  // exceeded in one of twenty cases
 };
 
-// Errors of independent causes.
+// Adds errors of independent causes.
 [[nodiscard]] inline ErrorEstimate operator+(const ErrorEstimate& a, const ErrorEstimate& b) {
   return {std::hypot(a.estimate, b.estimate), std::hypot(a.bound_95, b.bound_95)};
 }

@@ -11,9 +11,9 @@
 namespace earthshine::raytrace {
 namespace {
 
-// What the ray through a pixel's centre met.
+// The hit of the ray through a pixel's centre.
 struct FirstHit {
-  const scenes::Triangle* triangle = nullptr;  // nullptr: nothing
+  const scenes::Triangle* triangle = nullptr;  // nullptr: no hit
   Rgb albedo{0.0};
   Vec3 position{0.0}, normal{0.0};
   double range_m = 0.0, depth_m = 0.0;
@@ -28,8 +28,8 @@ FirstHit first_hit(const scenes::Scene& scene, const scenes::RayQuery& query,
   found.triangle = &scene.triangles[hit.triangle];
   found.albedo = scenes::diffuse_at(scene, scene.materials[found.triangle->material], hit);
   const Vec3 normal = scenes::triangle_normal(scene, hit.triangle);
-  // Where the ray crosses the triangle's plane, in double precision: the traced distance is single,
-  // and who projects positions back would see that.
+  // Intersection with the triangle's plane in double precision: the traced distance is in single
+  // precision, whose rounding is visible when positions are projected back.
   const double towards = glm::dot(ray.direction, normal);
   const double exact =
       glm::dot(scene.vertices[found.triangle->vertex[0]] - ray.origin, normal) / towards;
@@ -51,7 +51,7 @@ using Value = float (*)(const FirstHit&, char last);
 struct Measured {
   const char* aov;
   std::vector<std::string> channels;
-  float missed;  // where there is no hit
+  float missed;  // value without a hit
   Value value;
 };
 
@@ -88,7 +88,7 @@ const std::vector<Measured>& measured() {
   return table;
 }
 
-// A channel of the image, and how it is filled.
+// A channel of the image, and its source.
 struct Filled {
   std::vector<float>* values;
   const Measured* layer;

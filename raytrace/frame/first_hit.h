@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The unfiltered layers: what the one ray through a pixel's centre and the lens's meets.
+// The unfiltered layers: the hit of the ray through the centres of a pixel and the lens.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace earthshine::raytrace {
 
-// Where the ray meets nothing: albedo, N and P 0; Z and range infinite; object and material -1.
+// Without a hit: albedo, N and P 0; Z and range infinite; object and material -1.
 struct FirstHitLayer {
   std::string aov;  // its word in --aov
   std::vector<std::string> channels;
@@ -22,12 +22,12 @@ struct FirstHitLayer {
 //   position  P.X/Y/Z       m
 //   depth     Z             m along the camera's axis
 //   range     range         m along the ray
-//   object    object        number in the scene's order
-//   material  material      number in the scene's order
+//   object    object        index in the scene
+//   material  material      index in the scene
 [[nodiscard]] const std::vector<FirstHitLayer>& first_hit_layers();
 
-// Fills those channels that `image`, `window` of the camera's picture, has. Places are worked out
-// in double precision and rounded once. Returns the rays cast.
+// Fills the first-hit channels of `image`, `window` of the camera's picture. Positions are computed
+// in double precision and rounded once. Returns the number of rays.
 std::uint64_t fill_first_hit(const scenes::Scene& scene, const scenes::RayQuery& query,
                              const CameraModel& camera, const Window& window, base::Image& image);
 

@@ -14,7 +14,7 @@ bool lies_in(const Window& part, const Window& whole) {
          part.y + part.rows <= whole.y + whole.rows;
 }
 
-// values: those of a part, row by row.
+// values: of a part, row by row.
 template <class Value>
 void place(const std::vector<Value>& values, const Window& part, const Window& whole,
            std::vector<Value>& all) {
@@ -42,7 +42,7 @@ Frame join(const std::vector<Frame>& parts, const Window& window) {
   whole.image = {window.columns, window.rows, {}};
   for (const base::Channel& channel : parts.front().image.channels) whole.image.add(channel.name);
   whole.error = StatedError(pixels);
-  // Sums of whole numbers, which means of the parts give back exactly.
+  // Recovers integer sums exactly from the parts' means.
   double samples = 0.0, finished = 0.0;
   for (const Frame& part : parts) {
     const auto count = static_cast<double>(part.window.pixel_count());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture from parts of it that were drawn apart.
+// Joins parts of a picture.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,9 @@
 
 namespace earthshine::raytrace {
 
-// The frame of `window` from frames whose windows lie in it, each of its pixels in exactly one:
-// image, stated error and what the report says of the pixels are those of one frame drawn at once.
-// Rays and seconds are all that the parts took. Throws std::invalid_argument where the windows do
-// not fill it or the frames have other layers.
+// The frame of `window` from frames whose windows divide it. Image, stated error and the report's
+// values per pixel are as in a frame drawn at once. Rays and seconds are sums over the parts.
+// Throws std::invalid_argument if the windows do not fill it or the frames have different layers.
 [[nodiscard]] Frame join(const std::vector<Frame>& parts, const Window& window);
 
 }  // namespace earthshine::raytrace

@@ -64,7 +64,7 @@ Layout add_layers(base::Image& image, const std::vector<std::string>& light_grou
   for (const std::string& aov : aovs) {
     const AovChannels& row = find_aov(aov);
     const std::size_t first = image.channels.size();
-    if (image.find(row.channels.front()) != nullptr) continue;  // asked for twice
+    if (image.find(row.channels.front()) != nullptr) continue;  // requested twice
     for (const std::string& channel : row.channels) image.add(channel);
     const auto part = std::find(part_names.begin(), part_names.end(), aov);
     if (part != part_names.end()) {

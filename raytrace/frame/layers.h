@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The layers of a frame, by the names that compositing programs know.
+// The layers of a frame, with the names that compositing programs know.
 #pragma once
 
 #include <cstddef>
@@ -12,10 +12,10 @@
 
 namespace earthshine::raytrace {
 
-// Where the layers of a frame stand among its channels.
+// Channel numbers of the layers of a frame.
 struct Layout {
-  std::vector<std::size_t> radiance;  // first of the three channels of each image layer: with more
-                                      // than one group light_<group>, else none
+  std::vector<std::size_t> radiance;  // first of the three channels of each image layer
+                                      // light_<group>; empty with one group
   std::vector<std::size_t> parts;     // per Part: its first channel, or none_wanted
   std::size_t variance = none_wanted;
 
@@ -24,7 +24,7 @@ struct Layout {
 };
 
 // R, G, B come first. The layers of first_hit.h and cryptomatte.h are found by name. Throws
-// base::Error (Input) for a layer that does not exist.
+// base::Error (Input) for an unknown layer.
 [[nodiscard]] Layout add_layers(base::Image& image, const std::vector<std::string>& light_groups,
                                 const std::vector<std::string>& aovs);
 

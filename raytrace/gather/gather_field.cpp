@@ -12,7 +12,7 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr std::size_t points_at_once = 4096;
-// Pixels to an off-grid point, or more: room for so many off-grid points is asked for at once.
+// Initial capacity: one off-grid point for this many pixels.
 constexpr std::size_t pixels_per_off_grid_point = 3;
 
 }  // namespace
@@ -109,7 +109,7 @@ void GatherField::share(Gathered kind, bool last) {
   if (!gathers(kind)) return;
   Estimate& estimate = estimate_[number(kind)];
   Shared& shared = shared_[number(kind)];
-  shared = {};  // its memory is taken again
+  shared = {};  // frees its memory
   if (!last && !estimate.total.empty()) {
     Estimate total = estimate.of_total();
     shared = share_among(kind, total, true);

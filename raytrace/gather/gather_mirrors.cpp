@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// GatherField's points on surfaces that the camera sees in a mirror: they lie where it sees them,
-// behind the mirror.
+// GatherField's points on surfaces that the camera sees in a mirror: they lie at their virtual
+// positions behind the mirror.
 #include <algorithm>
 
 #include "raytrace/gather/gather_field.h"

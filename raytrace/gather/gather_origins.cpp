@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far about it a gather point stands for its surface, and where its rays start.
+// Validity radius of a gather point, and the origins of its rays.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -23,7 +23,7 @@ void GatherField::classify_origins(std::uint32_t round, const std::function<bool
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const GatherPoint& point = points_[p];
     if (over_pixel_[p] != 0 || estimate.samples[p] <= 0.0F) continue;
-    // No ray has met a surface: what small things others will meet may be near.
+    // No ray has met a surface: small bodies that other rays will meet may be near.
     const bool met = lengths_[p].count > 0.0;
     const double reach_m =
         std::min(lengths_[p].harmonic_mean(), lengths_[p].harmonic_mean_of_light());
@@ -47,7 +47,7 @@ RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t
     const base::SobolOwen4 places(key);
     Places in_x, in_y;
     const auto [x, y] = place_of(pixel_of(p));
-    // No more places than rays, unless some of them show another surface.
+    // As many places as rays, or more if some of them show another surface.
     std::size_t drawn = 0;
     for (const std::size_t end :
          {std::min<std::size_t>(rays, RayOrigins::most), RayOrigins::most}) {
@@ -67,8 +67,9 @@ RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t
         if (!(mirrored ? place_mirrored(ray, hit, found, start) : place(ray, hit, found, start))) {
           continue;
         }
-        // Only where camera samples read this point: it stands for the mean over just these places.
-        // For initial samples, which do not know yet what is near, that is the footprint.
+        // Accept only places that read this point: it estimates the mean over exactly these places.
+        // During the initial sampling the distances are unknown, and the footprint limits the
+        // places.
         const bool far = points_[p].reach_m == std::numeric_limits<float>::max() &&
                          glm::length(found.position - points_[p].position) > own_radius(p);
         if (far || find_in(x, y, sighting_of(found)) != p) continue;
@@ -80,7 +81,7 @@ RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t
   return origins;
 }
 
-// A off-grid point lies anywhere in its pixel: if it stands for the mean over the pixel, all of the
+// An off-grid point lies anywhere in its pixel. If it estimates the mean over the pixel, the whole
 // pixel has to read it.
 float GatherField::own_radius(std::size_t p) const {
   const float radius = footprint_radius(points_[p]);
@@ -92,7 +93,8 @@ std::size_t GatherField::find(int x, int y, const Sighting& place) const {
 }
 
 std::size_t GatherField::find_in(int x, int y, const Sighting& place) const {
-  // Further off, as a lens out of focus looks, irradiance may be another.
+  // Limits the distance: camera samples of a lens out of focus reach farther, where the irradiance
+  // may differ.
   const auto if_near = [&](std::size_t index) {
     const GatherPoint& point = points_[index];
     const float wide =
@@ -118,7 +120,7 @@ GatherField::Reading GatherField::reading(int x, int y, const Sighting& place, s
   if (setting_.step == 1 || own >= grid_) return read;
   const auto [at_x, at_y] = place_of(own);
   const auto step = static_cast<float>(setting_.step);
-  // From the point's middle, in the field's pixels.
+  // Offset from the point's pixel centre, in pixels of the field.
   const float dx = (static_cast<float>(x) + 0.5F) / step - static_cast<float>(at_x) - 0.5F;
   const float dy = (static_cast<float>(y) + 0.5F) / step - static_cast<float>(at_y) - 0.5F;
   const int to_x = dx < 0.0F ? -1 : 1, to_y = dy < 0.0F ? -1 : 1;

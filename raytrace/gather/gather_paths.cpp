@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// GatherField's paths that find what the solution lacks, and its rays over lobes.
+// GatherField's residual paths, and its rays over lobes.
 #include <array>
 
 #include "base/ranks/ranks.h"
@@ -42,14 +42,14 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
         const base::SobolOwen4 directions(key);
         const RayOrigins origins = draw_origins(kind, p, 2 * round + half, each, counts);
         for (std::uint32_t k = 0; k < each; ++k) {
-          // What was cast of a point that a stop leaves half done is lost.
+          // A stop discards the samples of an unfinished point.
           if (k % paths_between_stops == paths_between_stops - 1 && stop && stop()) {
             counts += walker.rays();
             return;
           }
           base::Rng rng(key.with(k));
           walker.select_sun_stratum(random_number_of(p), first / 2 + k,
-                                    half);  // neighbours: another first
+                                    half);  // neighbours begin at other strata
           const auto u = directions.point2(k);
           const RayStart& start = origins.start[k % origins.count];
           if (lobe) {
@@ -82,7 +82,7 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
   add_notes(kind, notes_of);
 }
 
-// The radiance that the lobe reflects for k_s = 1, by one ray drawn from it.
+// Incident radiance along one ray drawn from the lobe, for k_s = 1.
 void GatherField::lobe_sample(std::uint32_t material, const RayStart& start,
                               const std::array<float, 2>& u, PathWalker& walker, base::Rng& rng,
                               std::vector<Rgb>& sum, RayCounts& counts) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// GatherField's points: what lies behind the pixels' centres, and beside it.
+// GatherField's points: surfaces behind the pixels' centres, and further surfaces in pixels.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -18,18 +18,18 @@ namespace {
 using scenes::HitPacket;
 using scenes::RayPacket;
 
-// Where eight rays cross a pixel: in columns one after another, in rows after van der Corput.
+// Positions of eight rays in a pixel: columns in order, rows by van der Corput's sequence.
 constexpr std::array<double, packet_width> off_grid_columns = {0.0625, 0.1875, 0.3125, 0.4375,
                                                                0.5625, 0.6875, 0.8125, 0.9375};
 constexpr std::array<double, packet_width> off_grid_rows = {0.0625, 0.5625, 0.3125, 0.8125,
                                                             0.1875, 0.6875, 0.4375, 0.9375};
-constexpr float rounding = 0.02F;  // of positions, over the points' spacing
+constexpr float rounding = 0.02F;  // relative to the points' spacing
 
 scenes::Hit hit_of(const HitPacket& hits, std::size_t k) {
   return {hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0};
 }
 
-// The pixels of the window that are `ring` away, across, down or both.
+// Visits the pixels of the window at Chebyshev distance `ring`.
 template <class Visit>
 void each_neighbour(const Window& window, int x, int y, int ring, const Visit& visit) {
   for (int qy = y - ring; qy <= y + ring; ++qy) {
@@ -126,7 +126,7 @@ std::array<GatherField::Met, packet_width> GatherField::trace_pixel(std::size_t 
   return met;
 }
 
-// Looks at pixels about which not all centres lie on one surface once more, by eight rays.
+// Casts eight rays through each pixel with another surface at a neighbouring centre.
 void GatherField::find_off_grid_points(const std::vector<Found>& mirrored) {
   std::vector<std::vector<Found>> found(tile_count(window_));
   even_.assign(grid_, 0);
@@ -157,7 +157,7 @@ void GatherField::find_off_grid_points(const std::vector<Found>& mirrored) {
       }
       same->off_grid_point.cover += 1.0F / packet_width;
     }
-    // Slivers are not worth a point of their own.
+    // Slivers get no point.
     const auto from = of_tile.begin() + static_cast<std::ptrdiff_t>(first);
     of_tile.erase(std::remove_if(from, of_tile.end(),
                                  [](const Found& one) {

@@ -32,13 +32,13 @@ void GatherRays::draw(const TilePoints& points, std::size_t first, std::size_t c
   samples.u.resize(rays() * samples.padded);
   samples.v.resize(rays() * samples.padded);
   for (std::size_t k = 0; k < count; ++k) {
-    // A point that is gathered at again, with more rays, gets other ones.
+    // A later call with more rays draws other samples.
     fill(k, base::Key(seed, base::Stream::FinalGather, points.pixel[first + k]).with(rays()),
          samples);
   }
 }
 
-// Every power of two of Owen-Sobol points has equally many in each cell.
+// Every power of two of Owen-scrambled Sobol points has equally many points in each cell.
 void GatherRays::fill(std::size_t point, base::Key key, Samples& samples) const {
   const base::SobolSet4::Scramble scramble(key);
   const std::size_t per_cell = rays() / cells_;
@@ -65,7 +65,7 @@ void GatherRays::make(const TilePoints& points, std::size_t first, std::size_t o
   const float* v = &samples.v[j * samples.padded + offset];
   const TilePoints::OriginSet& from = points.set_of(j);
   for (std::size_t k = 0; k < packet_width; ++k) {
-    // Nobody reads the hits of lanes past the last point.
+    // Lanes past the last point are ignored.
     const std::size_t p = first + offset + k;
     const float radius = std::sqrt(u[k]), z = std::sqrt(1.0F - u[k]);
     const base::Turned way = base::turn(v[k]);

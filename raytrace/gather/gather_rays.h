@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rays of the final gather from a tile's points: cosine-distributed, Owen-Sobol per point,
-// eight at a time from neighbouring points into the same cell of the hemisphere.
+// The rays of the final gather from the points of a tile: cosine-distributed, Owen-scrambled Sobol
+// per point. Eight neighbouring points cast rays into the same cell of the hemisphere together.
 #pragma once
 
 #include <algorithm>
@@ -19,14 +19,14 @@ inline constexpr int gather_tile_px = 8;
 inline constexpr std::size_t most_tile_points =
     static_cast<std::size_t>(gather_tile_px) * gather_tile_px;
 
-// On a surface: where rays leave it, lifted off, its unit normal on that side, and the way of the
-// camera's ray that met it.
+// Start of rays on a surface: position off the surface, unit normal on that side, and direction of
+// the camera ray that met it.
 struct RayStart {
   Vec3 position{0.0};
   glm::vec3 normal{0.0F}, along{0.0F};
 };
 
-// Where a point's rays start: one place behind its pixel's centre, or several of its pixel.
+// The start points of a point's rays: one behind its pixel's centre, or several in its pixel.
 struct RayOrigins {
   static constexpr std::size_t most = packet_width;
   std::size_t count = 0;
@@ -34,16 +34,16 @@ struct RayOrigins {
   void add(const RayStart& one) { start[count++] = one; }
 };
 
-// Of rays that end on a surface; what misses all is far, and changes little nearby.
+// Lengths of rays that end on a surface. Misses are far and vary little nearby.
 struct RayLengths {
-  double inverse = 0.0, count = 0.0;        // sum of 1 / m
-  double light_inverse = 0.0, light = 0.0;  // the same, each ray by its luminance, cd/m^2
+  double inverse = 0.0, count = 0.0;        // sum of 1 / m, number of rays
+  double light_inverse = 0.0, light = 0.0;  // the same, weighted by luminance, cd/m^2
   void add(double length_m, double luminance) {
     const double near = 1.0 / std::max(length_m, 1e-6);
     inverse += near, count += 1.0;
     add_light(length_m, luminance);
   }
-  // Of a ray aimed at what is bright: how far that is.
+  // Adds a ray aimed at a bright patch at that distance.
   void add_light(double length_m, double luminance) {
     light_inverse += luminance / std::max(length_m, 1e-6), light += luminance;
   }
@@ -52,13 +52,13 @@ struct RayLengths {
     light_inverse += more.light_inverse, light += more.light;
   }
   [[nodiscard]] double harmonic_mean() const { return count / inverse; }
-  // Of what the light comes from: something small and bright may be near where most is far.
+  // Harmonic mean distance of the light: a small bright surface may be near where most is far.
   [[nodiscard]] double harmonic_mean_of_light() const {
     return light > 0.0 ? light / light_inverse : harmonic_mean();
   }
 };
 
-// The points of one tile, side by side for the vector units; each has as many ray origins.
+// The points of one tile, side by side for SIMD; all have the same number of ray origins.
 struct TilePoints {
   struct OriginSet {
     std::array<Vec3, most_tile_points> origin, normal;
@@ -77,7 +77,7 @@ struct TilePoints {
   std::size_t count = 0;
 
   explicit TilePoints(std::size_t origins) : sets(origins) {}
-  // Fewer origins than there are sets come again.
+  // Repeats the origins of a point if it has fewer than there are sets.
   void add(std::size_t at, std::uint64_t of_pixel, const RayOrigins& of_point, const Vec3& centre) {
     const std::size_t k = count++;
     index[k] = at;
@@ -96,19 +96,19 @@ struct TilePoints {
       to.normal_x[k] = n.x, to.normal_y[k] = n.y, to.normal_z[k] = n.z;
     }
   }
-  // Of ray j: rays of a row and of a column of the hemisphere's cells start at all places in turn.
+  // Origins of ray j: rays in a row or column of the hemisphere's cells use all origins in turn.
   [[nodiscard]] const OriginSet& set_of(std::size_t j) const {
     return sets[(j + j / RayOrigins::most) % sets.size()];
   }
 };
 
-// The samples of all points of a batch, in cells.
+// The samples of all points of a batch, by cells.
 class GatherRays {
  public:
   // rays: per point, a power of two, 4 or more.
   explicit GatherRays(std::uint32_t rays);
   [[nodiscard]] std::size_t rays() const { return set_.count(); }
-  // Points that a batch may have, so that its samples stay in cache.
+  // Most points of a batch whose samples stay in cache.
   [[nodiscard]] std::size_t batch() const;
 
   // Samples of a batch: [cell][sample in the cell][point], the points padded to whole packets.
@@ -119,7 +119,7 @@ class GatherRays {
   void draw(const TilePoints& points, std::size_t first, std::size_t count, std::uint64_t seed,
             Samples& samples) const;
 
-  // Ray j, below rays(), of the eight points from first + offset on; their cosines.
+  // Ray j, below rays(), of the eight points from first + offset on, and its cosines.
   static void make(const TilePoints& points, std::size_t first, std::size_t offset, std::size_t j,
                    const Samples& samples, scenes::RayPacket& rays,
                    std::array<float, packet_width>& cosine);

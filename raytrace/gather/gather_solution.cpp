@@ -15,9 +15,9 @@ using scenes::HitPacket;
 using scenes::RayPacket;
 
 constexpr std::uint32_t most_rays = 1U << 14U;  // per half
-constexpr std::size_t most_factors = 32;        // more samples may be any power of two as many
+constexpr std::size_t most_factors = 32;        // sets per point; more samples are a power of two
 
-// Rays that read the solution, from some points of a tile: their sums per point.
+// Rays from some points of a tile that read the solution: their sums per point.
 class SolutionRays {
  public:
   SolutionRays(const scenes::RayQuery& query, const IncomingLight& incoming, const GatherRays& rays,
@@ -110,7 +110,7 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
     if (!wanted || more[p] < fewest_samples(Gathered::Solution)) return 0U;
     return std::min(most_rays, std::bit_floor(more[p] / 2));
   };
-  std::uint32_t classes = 0;  // every power of two that is wanted somewhere
+  std::uint32_t classes = 0;  // every power of two that some point requests
   for (std::size_t p = 0; p < points_.size(); ++p) classes |= rays_for(p);
   for (std::size_t factor = 0; factor < most_factors; ++factor) {
     const std::uint32_t of_class = 1U << factor;

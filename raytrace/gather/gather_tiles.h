@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tiles that gather points are worked on in.
+// Tiles of gather points: the unit of work of a thread.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which gather points get initial samples, and which where a stop or a time limit leaves no time
-// for all of these.
+// Selects the gather points for initial samples, and those to sample after a stop or time limit.
 #include <algorithm>
 #include <bit>
 
@@ -64,7 +63,7 @@ void GatherField::sample_sparse(Gathered kind) {
     }
     return false;
   };
-  // The one that serves most of those which come later: they lie to the right and below.
+  // The point that serves (x, y) and most of the later pixels, which lie to the right and below.
   const auto best_for = [&](int x, int y) {
     for (int away = 2 * tuning::stop_reach_px; away > 0; --away) {
       for (int dy = std::max(0, away - tuning::stop_reach_px);

@@ -24,13 +24,13 @@ void IncomingLight::see_sky(const Vec3& direction, const Rgb& weight, std::span<
   if (straight && out.size() > layers_) out.back() += light;
 }
 
-// Through glass that does not bend them aimed rays come to bright patches, too; all else that
-// mirrors and glass show is left to the others.
+// Aimed rays find bright patches through glass that does not bend them, too. All other light by
+// mirrors and glass belongs to the cosine-distributed rays.
 void IncomingLight::follow_specular(const scenes::Hit& first, const Vec3& along,
                                     const MisContext& share, Rgb weight, std::span<Rgb> out,
                                     RayCounts& rays) const {
   const bool aimed = share.aimed_at != radiosity::no_patch;
-  bool glass = false;  // the last surface
+  bool glass = false;  // whether the last surface was glass
   const auto visit = [&](const scenes::Hit& hit, const Vec3& direction, int step) {
     if (step > 0) {
       ++(glass ? rays.refraction : rays.mirror);
@@ -57,12 +57,12 @@ double IncomingLight::residual_weight(const scenes::Hit& hit, const Vec3& direct
   const radiosity::Patches& patches = bright_.patches();
   const std::uint32_t patch = patches.find(hit.triangle, hit.u, hit.v, hit.front);
   if (share.aimed_at != radiosity::no_patch) {
-    // A curved patch may stand in its own way.
+    // A curved patch may occlude itself.
     const bool there = share.triangle == scenes::no_triangle || share.triangle == hit.triangle;
     return patch == share.aimed_at && there ? 1.0 : 0.0;
   }
   if (patch == radiosity::no_patch || !bright_.holds(patch)) return 1.0;
-  // Glass may lie between, so that hit.t is a part of the way.
+  // Behind glass, hit.t is only the last segment.
   const double distance_m = glm::distance(scenes::hit_position(scene_, hit), share.from.position);
   const double density =
       bright_.density_per_sr(share.from, patch, distance_m,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a ray that left a diffuse or glossy surface brings back: the radiosity of the patch it
-// meets, the sky it escapes to, what mirrors and glass on its way pass on.
+// Radiance along a ray that left a diffuse or glossy surface: from the patch it meets, the sky it
+// escapes to, and mirrors and glass on its way.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,15 @@
 
 namespace earthshine::raytrace {
 
-// How a ray shares its work with rays aimed at bright patches (multiple importance sampling,
-// balance heuristic).
+// Data for the balance heuristic of a ray, which combines cosine-distributed rays with rays aimed
+// at bright patches.
 struct MisContext {
-  double cosine = 0.0;  // at the surface it left; 0: it shares with no other ray
+  double cosine = 0.0;  // at the surface that it left; 0: no other sampling finds its hit
   BrightPatches::Place from;
-  std::uint32_t aimed_at = radiosity::no_patch;   // the patch that an aimed ray must meet to count
-  std::uint32_t triangle = scenes::no_triangle;   // and of a cluster the triangle
-  double cosine_samples = 1.0, aimed_rays = 1.0;  // cast from that surface point each way
+  std::uint32_t aimed_at = radiosity::no_patch;   // an aimed ray counts only if it meets this patch
+  std::uint32_t triangle = scenes::no_triangle;   // and this triangle of a cluster
+  double cosine_samples = 1.0, aimed_rays = 1.0;  // numbers of rays of each kind from that surface
+                                                  // point
 };
 
 class IncomingLight {
@@ -42,26 +43,24 @@ class IncomingLight {
     if (world.effects.earth_by_gather) earth_.emplace(world.scene);
   }
 
-  // Adds weight * radiance along the ray to out[0 .. layers); if out is one longer, what came
-  // straight from the sky is added to its last entry as well.
-  // Rays that go on from mirrors and glass are counted in `rays`. Returns the kept part of what
-  // surfaces send.
+  // Adds weight * radiance along the ray to out[0 .. layers). If out is one longer, its last entry
+  // gets the light straight from the sky as well. Counts in `rays` the rays that continue at
+  // mirrors and glass. Returns the MIS weight of the light from surfaces.
   double add(const scenes::Hit& hit, const Vec3& direction, const MisContext& share,
              const Rgb& weight, std::span<Rgb> out, RayCounts& rays) const;
 
-  // Whether no ray brings anything: there is no solution, and the sky is no part of it.
+  // Whether all rays are dark: there is no solution, and gather rays do not carry the sky.
   [[nodiscard]] bool is_dark() const { return table_.empty() && !earth_; }
 
   [[nodiscard]] const BrightPatches& bright() const { return bright_; }
 
-  // The weight of the ray's end, of all rays that may find it, from `share`; there may be glass
-  // before it that does not bend the ray.
+  // MIS weight of the ray's hit, from `share`. Glass on the way must not bend the ray.
   [[nodiscard]] double residual_weight(const scenes::Hit& hit, const Vec3& direction,
                                        const MisContext& share) const;
 
-  // The ray aimed at a bright patch from a surface point, and its weight for reflected radiance
-  // k_d / pi E: (cosine / pi) / (cosine_samples cosine / pi + aimed_rays density). Weight 0: it
-  // leads nowhere.
+  // A ray aimed at a bright patch from a surface point, with its weight for the reflected radiance
+  // k_d / pi E: (cosine / pi) / (cosine_samples cosine / pi + aimed_rays density). Weight 0: no
+  // light.
   struct Aimed {
     Vec3 direction{0.0};
     double weight = 0.0;
@@ -79,7 +78,7 @@ class IncomingLight {
   const RadianceTable& table_;
   const BrightPatches& bright_;
   std::size_t layers_, earth_layer_;
-  std::optional<scenes::EarthRadiance> earth_;  // where gather rays carry its light
+  std::optional<scenes::EarthRadiance> earth_;  // empty unless gather rays carry its light
   bool by_part_, follows_specular_;
 };
 

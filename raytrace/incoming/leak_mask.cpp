@@ -13,7 +13,7 @@ namespace {
 
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
-// Cells of the facet that share radiance, by number of leaf.
+// Pairs of cells of the facet that interpolate with each other, by leaf numbers.
 void neighbours_of(const radiosity::Patches& patches, const radiosity::Facet& facet,
                    std::vector<Pair>& pairs) {
   pairs.clear();
@@ -44,10 +44,10 @@ void neighbours_of(const radiosity::Patches& patches, const radiosity::Facet& fa
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
-// Appends those of the pairs, moved up to the side's first patch, that do not see each other.
+// Appends the pairs that do not see each other, moved up to the side's first patch.
 void look_across(const scenes::RayQuery& query, const radiosity::Patches& patches,
                  const std::vector<Pair>& pairs, std::uint32_t first, std::vector<Pair>& parted) {
-  constexpr double lift_per_length = 1e-3;  // clear of rounding where a wall meets the floor
+  constexpr double lift_per_length = 1e-3;  // above rounding errors where a wall meets the floor
   scenes::RayPacket packet;
   for (std::size_t begin = 0; begin < pairs.size(); begin += scenes::RayPacket::width) {
     const std::size_t count = std::min(scenes::RayPacket::width, pairs.size() - begin);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which neighbouring cells of a facet something parts: a wall that stands on a floor has light on
-// the one side that the other side knows nothing of, however close the cells.
+// Finds neighbouring cells of a facet with an occluder between them: a wall on a floor separates
+// light and shadow, however close the cells are. Prevents light leaks by interpolation.
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,16 @@ namespace earthshine::raytrace {
 
 class LeakMask {
  public:
-  // Nothing is parted.
+  // No cells are separated.
   LeakMask() = default;
-  // Casts one ray between the centres of every two cells that share radiance where it is
-  // interpolated (radiance_table.h), on each side that has patches, a thousandth of its length
-  // above the surface: some four rays a patch.
+  // Casts one ray between the centres of every two cells that interpolate with each other
+  // (radiance_table.h), on each side that has patches, lifted by a thousandth of its length: about
+  // four rays per patch.
   LeakMask(const scenes::RayQuery& query, const radiosity::Patches& patches);
 
-  // Of two patches on one side of one facet.
+  // Whether two patches on one side of one facet are separated.
   [[nodiscard]] bool parted(std::uint32_t a, std::uint32_t b) const;
-  // Whether the patch is parted from any other: cheap.
+  // Whether the patch is separated from any other; fast.
   [[nodiscard]] bool at_wall(std::uint32_t patch) const {
     return !at_wall_.empty() && at_wall_[patch] != 0;
   }
@@ -31,7 +31,7 @@ class LeakMask {
 
  private:
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
-  std::vector<std::uint8_t> at_wall_;  // per patch; empty: no patch is
+  std::vector<std::uint8_t> at_wall_;  // per patch; empty: no patch is at a wall
   std::vector<Pair> parted_;           // the lower patch first; sorted
   std::uint64_t rays_ = 0;
 };

@@ -9,8 +9,7 @@
 namespace earthshine::raytrace {
 namespace {
 
-// The two cells around a parameter and the weight of the second; at the ends both are the last
-// cell.
+// The two cells around a parameter and the weight of the second; at the ends both are the end cell.
 struct Neighbours {
   std::uint32_t low, high;
   float weight;
@@ -27,7 +26,7 @@ using radiosity::Parameters;
 using radiosity::Patches;
 using radiosity::Rectangle;
 
-// Up to four cells about a point.
+// Up to four cells around a point.
 struct Around {
   std::array<std::uint32_t, 4> leaf;
   std::array<Rectangle, 4> at;
@@ -51,7 +50,7 @@ Around cells_around(const Patches& patches, const Facet& facet, const Parameters
   return around;
 }
 
-// Quotients of whole numbers below 2^21: they are equal, or differ by far more than rounding.
+// Quotients of integers below 2^21: they are equal, or differ by far more than rounding.
 bool is_knot(double low, double high, double x) {
   constexpr double rounding = 1e-12;
   return std::min({std::abs(x - low), std::abs(x - high), std::abs(x - 0.5 * (low + high))}) <=
@@ -60,7 +59,7 @@ bool is_knot(double low, double high, double x) {
 
 using Four = std::array<double, 4>;
 
-// Takes from v what lies along u.
+// Subtracts from v its projection on u.
 void remove_part(Four& v, const Four& u) {
   double dot = 0.0, norm = 0.0;
   for (std::size_t q = 0; q < 4; ++q) {
@@ -71,9 +70,9 @@ void remove_part(Four& v, const Four& u) {
   for (std::size_t q = 0; q < 4; ++q) v[q] -= dot / norm * u[q];
 }
 
-// Of all weights with sum 1 that put the mean of the cells' centres at the point, along those axes
-// that have cells on both sides, the ones of least norm: what is left of (1, 1, ...) at right
-// angles to the offsets, scaled. Equal weights where that would make one negative.
+// Weights with sum 1 for which the mean of the cells' centres is the point, along the axes that
+// have cells on both sides. Of all such weights they have the least norm: the part of (1, 1, ...)
+// orthogonal to the offsets, scaled. Equal weights if one would be negative.
 Four linear_weights(const Around& around, const Parameters& p) {
   std::array<Four, 2> offset{};
   Four even{};
@@ -85,7 +84,7 @@ Four linear_weights(const Around& around, const Parameters& p) {
   }
   for (Four& axis : offset) {
     const auto [low, high] = std::minmax_element(axis.begin(), axis.end());
-    // Cells on one side only, or one that is centred: the other entries are zero or rounding.
+    // Cells on one side only, or centred: the other entries are zero or rounding errors.
     if (*low > -1e-12 || *high < 1e-12) axis.fill(0.0);
   }
   remove_part(offset[1], offset[0]);
@@ -104,7 +103,7 @@ void add_terms(const Patches& patches, const Facet& facet, const Parameters& p, 
     const Rectangle& r = around.at[q];
     const bool in_s = is_knot(r.s0, r.s1, p.s), in_t = is_knot(r.t0, r.t1, p.t);
     if (in_s && in_t) continue;
-    // On this larger cell's side, between two of its knots.
+    // On the side of this larger cell, between two of its knots.
     double low = in_s ? r.t0 : r.s0, high = in_s ? r.t1 : r.s1;
     const double x = in_s ? p.t : p.s, middle = 0.5 * (low + high);
     (x < middle ? high : low) = middle;
@@ -186,7 +185,7 @@ void RadianceTable::add_uneven(const radiosity::Facet& facet, bool front,
                                const radiosity::Parameters& where, const Rgb& weight,
                                std::span<Rgb> out) const {
   const radiosity::Patches::Place at = patches_->place(facet, where);
-  // The quarter of the cell, and where in the quarter.
+  // The quarter of the cell, and the position in the quarter.
   const std::size_t i = at.x < 0.5 ? 0 : 1, j = at.y < 0.5 ? 0 : 1;
   const auto s = static_cast<float>(2.0 * at.x - static_cast<double>(i));
   const auto t = static_cast<float>(2.0 * at.y - static_cast<double>(j));

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The solution as rays read it: radiance B / pi at any surface point, per image layer, flat in
-// memory.
+// The radiance B / pi of the solution at any surface point, per image layer, for look-ups by rays.
 #pragma once
 
 #include <array>
@@ -14,23 +13,22 @@
 
 namespace earthshine::raytrace {
 
-// layers: 1 (all light groups summed) or one per group. Between the centres of a facet's cells the
-// radiance is interpolated bilinearly, which makes the error of reading it fall with the square of
-// the patch edge; where cells of different sizes meet, between their knots (below).
-// Cells of a cluster (radiosity/patches/clusters.h) show one radiance each.
-// Across what stands between two cells (leak_mask.h) nothing is interpolated: a cell takes its own
-// radiance where it would take that of one that it does not see.
+// layers: 1 (sum of all light groups) or one per group. Radiance is interpolated bilinearly between
+// the centres of a facet's cells, so that its error falls with the square of the patch edge; cells
+// of different sizes are interpolated between knots (below). Cells of a cluster
+// (radiosity/patches/clusters.h) have constant radiance. Across an occluder between two cells
+// (leak_mask.h) each cell uses its own radiance in place of the other's.
 class RadianceTable {
  public:
   RadianceTable() = default;
-  // values: radiosity or indirect_radiosity of the solution. `sight`, like the solution, must
-  // outlive the table.
+  // values: radiosity or indirect_radiosity of the solution. The solution and `sight` must outlive
+  // the table.
   RadianceTable(const radiosity::Solution& solution, std::span<const float> values, bool per_light,
                 const LeakMask& sight);
 
   [[nodiscard]] bool empty() const { return radiance_.empty(); }
 
-  // Adds weight * radiance to out[0 .. layers). Nothing for the black back of a one-sided surface.
+  // Adds weight * radiance to out[0 .. layers). The black back of a one-sided surface adds nothing.
   void add(const scenes::Hit& hit, const Rgb& weight, std::span<Rgb> out) const;
 
  private:
@@ -42,16 +40,16 @@ class RadianceTable {
   const LeakMask* sight_ = nullptr;
   std::size_t layers_ = 0;
   std::vector<glm::vec4> radiance_;  // patch * layers + layer; fourth component unused
-  // Facets with a tree: (leaf * knots_per_cell + knot) * layers + layer from where the side starts.
+  // Facets with a tree: (leaf * knots_per_cell + knot) * layers + layer, from side_knots_ on.
   std::vector<glm::vec4> knots_;
-  std::vector<std::array<std::size_t, 2>> side_knots_;  // per facet: back, front
+  std::vector<std::array<std::size_t, 2>> side_knots_;  // per facet: start of back, front
 };
 
-// Interpolation on facets whose cells are cut unevenly. Every cell has nine knots: its centre, its
-// corners and the middles of its sides. Between four of them the radiance is bilinear; where all
-// cells are alike that is the same as interpolating between the centres. A knot on a larger
-// neighbour's side that is none of the neighbour's own knots takes its value from the two that are,
-// so that both cells agree along the side they share.
+// Interpolation on facets with cells of different sizes. Every cell has nine knots: its centre,
+// corners and the midpoints of its sides. Radiance is bilinear between four of them; with equal
+// cells this equals interpolation between the centres. A knot on the side of a larger neighbour
+// that is not one of its knots is interpolated between two that are, so that the radiance is
+// continuous across the side.
 
 inline constexpr std::size_t knots_per_cell = 9;
 
@@ -60,9 +58,9 @@ struct KnotTerm {
   float weight;
 };
 
-// What the value at knot 3 i + j of a leaf is made of, appended to `terms`: i = 0, 1, 2 along s, j
-// along t. The weights add up to 1, and a function linear in (s, t) is met exactly except in the
-// outer half of the cells at the facet's edge, where it is taken as constant outward.
+// Appends the weights of the cells' values at knot 3 i + j of a leaf: i = 0, 1, 2 along s, j along
+// t. The weights add up to 1. Functions linear in (s, t) are reproduced, except in the outer half
+// of the cells at the facet's edge, where the values are extrapolated as constants.
 void add_knot_terms(const radiosity::Patches& patches, const radiosity::Facet& facet,
                     std::uint32_t leaf, std::uint32_t i, std::uint32_t j,
                     std::vector<KnotTerm>& terms);

@@ -26,7 +26,7 @@ const scenes::Area& find_area(const scenes::Scene& scene, const std::string& nam
               names.empty() ? "Add [[area]] with name, center, edge_u and edge_v" : "");
 }
 
-// Share of the view of a plate that faces `normal` which the area's shining side fills.
+// Share of the view of a plate facing `normal` that the area's shining side fills.
 double share_of_view(const scenes::Area& area, const Vec3& point, const Vec3& normal) {
   if (glm::dot(point - area.center, area.normal) <= 0.0) return 0.0;
   const Vec3 u = 0.5 * area.edge_u, v = 0.5 * area.edge_v;
@@ -47,7 +47,7 @@ Vec3 scene_centre(const scenes::Scene& scene) {
 }
 
 Rgb earth_illuminance_lx(const scenes::Scene& scene) {
-  // A Lambert Earth's terminator is the only edge in the disc: errors below 1e-3 of E.
+  // The terminator of a Lambert Earth is the only edge in the disc: errors below 1e-3 of E.
   constexpr int rings = 64, sectors = 256;
   const double half_angle = base::radians(scene.earth->half_angle_deg);
   Rgb sum(0.0);

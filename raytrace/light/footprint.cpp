@@ -55,7 +55,7 @@ Footprint::Places Footprint::toward(const Vec3& lamp, const scenes::RayQuery& qu
       scenes::sample_rectangle(lamp, corner_, along_, across_, double(u[0]), double(u[1]));
   const double fall = -glm::dot(seen.direction, normal_);
   if (!(seen.solid_angle_sr > 0.0) || fall <= 0.0) return {};
-  // Per area: of the camera's samples, and of points toward which the lamp shines.
+  // Densities per area: of the camera's samples, and of points sampled toward the lamp.
   const CameraModel& camera = pixel_.camera;
   const glm::dvec2 middle(pixel_.x + 0.5, pixel_.y + 0.5);
   const auto by_camera = [&](const Vec3& at) {
@@ -72,8 +72,8 @@ Footprint::Places Footprint::toward(const Vec3& lamp, const scenes::RayQuery& qu
   const double own_by_lamp = by_lamp(distance), there_by_lamp = by_lamp(reach);
   places.own_weight = own * own / (own * own + own_by_lamp * own_by_lamp);
   if (there <= 0.0 || !is_seen(query, glm::normalize(places.point - lens_))) return places;
-  // Of the samples the share that meets the plane asks. The mean number of rays until one meets it
-  // is one over that share.
+  // Only samples that hit the plane get here. The mean number of rays up to a hit is the reciprocal
+  // of the probability of a hit.
   int rays = 1;
   for (; rays < tuning::most_footprint_rays; ++rays) {
     const double x = rng.next(), y = rng.next();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// LightSampler's images of lights in flat mirrors, and what is known of lamps without size.
+// LightSampler's images of lights in flat mirrors, and its data of lamps without size.
 #include <algorithm>
 #include <cmath>
 
@@ -50,14 +50,14 @@ void LightSampler::find_mirror_lights() {
   }
 }
 
-// False where nothing of a light falls on its mirror's front, as far as it is known without rays.
+// False if it is certain without rays that no light reaches the mirror's front.
 bool LightSampler::reaches_mirror(std::size_t index) const {
   const scenes::FlatMirror& mirror = *lights_[index].mirror;
   const DeltaLight& ray = delta_lights_[index];
   if (!ray.is_delta) return true;
   if (ray.lamp_height_m <= 0.0) return false;
   if (ray.field_cosine < -1.0) return true;
-  const Vec3 way = mirror.centre - ray.position;  // from the image, whose axis is turned as well
+  const Vec3 way = mirror.centre - ray.position;  // from the image, whose axis is mirrored, too
   const double distance = glm::length(way);
   if (distance <= mirror.radius_m) return true;
   const double off = std::acos(std::clamp(glm::dot(way, ray.axis) / distance, -1.0, 1.0));

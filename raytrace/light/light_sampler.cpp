@@ -19,7 +19,7 @@ namespace {
 constexpr double rounding = 1e-9;
 
 double fraction(double x) { return x - std::floor(x); }
-// In the same order as x.
+// Increases with x.
 double signed_square(double x) { return x * std::abs(x); }
 
 }  // namespace
@@ -32,7 +32,7 @@ LightSampler::LightSampler(const scenes::World& world, Indirect indirect, int di
       mirrors_(distributed_ ? std::span<const scenes::FlatMirror>() : mirrors),
       earth_area_(distributed_ ? std::move(earth_area) : std::nullopt) {
   const int copies = distributed_ ? distributed_lights : 1;
-  // Without interreflection nothing carries emitters through F, so that all of them are sampled.
+  // Without interreflection F carries no emitters, so that shadow rays sample all of them.
   const std::vector<bool> is_explicit = radiosity::emitter_is_explicit(scene_);
   using Shines = scenes::ShiningLight::Kind;
   for (const auto& [kind, group, k] : scenes::shining_lights(world)) {
@@ -174,7 +174,8 @@ void LightSampler::add(Light light, int copies) {
   light.share = 1.0 / copies;
   for (int k = 0; k < copies; ++k) {
     light.u = (k + 0.5) / copies;
-    light.v = light.kind == Kind::Earth ? fraction(k * 0.6180339887498949)  // Fibonacci cap
+    light.v = light.kind == Kind::Earth ? fraction(k * 0.6180339887498949)  // Fibonacci lattice on
+                                                                            // the cap
                                         : fraction(0.5 + k * base::r2_v);
     if (light.kind != Kind::Earth) light.u = fraction(0.5 + k * base::r2_u);
     lights_.push_back(light);
@@ -206,7 +207,7 @@ bool LightSampler::may_reach(std::size_t index, const Vec3& point, const Vec3& n
   const DeltaLight& ray = delta_lights_[index];
   const Vec3 way = ray.position - point;
   if (ray.is_delta) {
-    // By squares: a picture asks this tens of millions of times, mostly of images.
+    // Squares avoid roots: a picture calls this tens of millions of times, mostly for images.
     const double distance2 = glm::dot(way, way);
     if (signed_square(glm::dot(way, normal)) < signed_square(-rounding) * distance2) return false;
     const double least = signed_square(ray.field_cosine - rounding);

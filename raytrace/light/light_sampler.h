@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sources that are reached by shadow rays, in one list.
+// All sources that shadow rays sample, in one list.
 #pragma once
 
 #include <cstddef>
@@ -18,32 +18,31 @@
 
 namespace earthshine::raytrace {
 
-// A source with one shadow ray per sample; (u, v) choose the point on it where it has extent.
+// Samples sources by one shadow ray each; (u, v) determine the point on a source with extent.
 class LightSampler {
  public:
-  // Radiosity and None: each source once, sampled at random. Distributed: wide sources are replaced
-  // by `distributed_lights` fixed points or directions of equal share, the same for every pixel;
-  // the Earth by points of earth_area (distributed_area.h), or by directions to its disc.
-  // per_group: every light group gets an image of its own, so that lamps are chosen within each and
-  // the Suns of a sky in parts are divided into strata.
-  // mirrors: flat ones, that throw each source's light a second time; not of distributed lights.
+  // Radiosity and None: each source once, sampled at random. Distributed: `distributed_lights`
+  // fixed points or directions of equal share, the same for every pixel, replace each wide source;
+  // for the Earth, points of earth_area (distributed_area.h) or directions to its disc. per_group:
+  // every light group gets its own image, so that lamps are chosen within each group, and the Suns
+  // of a sky in parts are divided into strata. mirrors: flat mirrors, each of which adds an image
+  // of each light; not for distributed lights.
   LightSampler(const scenes::World& world, Indirect indirect, int distributed_lights,
                bool per_group = false, std::optional<scenes::Lamp> earth_area = std::nullopt,
                std::span<const scenes::FlatMirror> mirrors = {});
 
-  // Adds the lights that get a shadow ray at the receiver: of few lamps all, of many those that
-  // matter, with weight 1, and some of the others by chance, with weight 1 / probability
-  // (scenes/light/light_tree.h), for u uniform in [0, 1). Everything that is no lamp is always
-  // among them, and so is every one of the distributed lights, whose number is the point of having
-  // them, all Suns too.
+  // Appends the lights that get a shadow ray at the receiver. Of few lamps, all. Of many lamps, the
+  // brightest with weight 1, and a random selection of the others with weight 1 / probability
+  // (scenes/light/light_tree.h), for u uniform in [0, 1). Lights that are no lamps are always
+  // included; so are all distributed lights, whose number is prescribed, and all Suns.
   void choose(const scenes::Receiver& receiver, double u,
               std::vector<scenes::LightChoice>& chosen) const;
 
   [[nodiscard]] const SunStrata& sun_strata() const { return sun_strata_; }
 
-  // The lamp whose shining surface a ray meets first, nearer than nearer_than_m.
+  // The first lamp surface on a ray, nearer than nearer_than_m.
   struct SeenLamp {
-    std::size_t lamp;  // of the scene
+    std::size_t lamp;  // index in the scene
     scenes::LampHit hit;
   };
   [[nodiscard]] std::optional<SeenLamp> seen_lamp(const Vec3& origin, const Vec3& direction,
@@ -53,15 +52,15 @@ class LightSampler {
   [[nodiscard]] std::size_t count() const { return lights_.size(); }
   [[nodiscard]] std::size_t group(std::size_t light) const { return lights_[light].group; }
   [[nodiscard]] scenes::LightKind kind(std::size_t light) const;
-  // False where no sample can reach a surface that faces `normal`, as far as it is known without
-  // one: a Sun below the horizon, a lamp behind the surface or not turned to it, one whose image is
-  // not seen in the mirror from there.
+  // False if it is certain without a sample that no light reaches a surface that faces `normal`: a
+  // Sun below the horizon; a lamp behind the surface or shining away from it; an image outside the
+  // mirror, seen from the point.
   [[nodiscard]] bool may_reach(std::size_t light, const Vec3& point, const Vec3& normal) const;
-  // Where a lamp without size is that shines straight, or nothing.
+  // Position of a lamp without size that shines directly, or nullptr.
   [[nodiscard]] const Vec3* lamp_point(std::size_t light) const {
     return light < sources_ && delta_lights_[light].is_delta ? &delta_lights_[light].position : nullptr;
   }
-  // visit(light) for each that may reach such a surface, but for the Suns of other strata.
+  // visit(light) for each light that may reach such a surface, without Suns of other strata.
   template <class Visit>
   void each_that_may_reach(const Vec3& point, const Vec3& normal, std::size_t sun_stratum,
                            const Visit& visit) const {
@@ -76,7 +75,7 @@ class LightSampler {
   [[nodiscard]] scenes::LightSample sample(std::size_t light, const Vec3& point, double u,
                                            double v) const;
   // One of a surface's samples of many lights, each by uniform(light), a pair in [0, 1). on_sun,
-  // empty before the first: the place on the disc that all Suns of a sky in parts share.
+  // empty at first: the point on the disc that all Suns of a sky in parts share.
   template <class Uniform>
   [[nodiscard]] scenes::LightSample sample(std::size_t light, const Vec3& point,
                                            const Uniform& uniform,
@@ -103,23 +102,24 @@ class LightSampler {
     double share = 1.0;                          // of the source's light
     const scenes::FlatMirror* mirror = nullptr;  // of an image
   };
-  // What lamps without size, or their images, send to a point: one ray, within the lamp's cone and
-  // off where the mirror is.
+  // Lamps without size, or their images: one ray to a point, within the lamp's cone and, for
+  // images, through the mirror.
   struct DeltaLight {
-    bool is_delta = false;         // that the light is
-    double field_cosine = -2.0;  // spot lamps: of half their field; others shine all round
-    double lamp_height_m = 0.0;  // over the mirror
+    bool is_delta = false;         // whether the light has no size
+    double field_cosine = -2.0;  // spot lamps: of half the field angle; others shine in all
+                                 // directions
+    double lamp_height_m = 0.0;  // above the mirror
     Vec3 position{0.0}, axis{0.0};
   };
   struct Cluster {
     scenes::LightTree tree;
-    std::vector<std::size_t> lights;  // of the tree's numbers
+    std::vector<std::size_t> lights;  // lights by their numbers in the tree
   };
-  // What comes by one mirror, or straight.
+  // Lights by one mirror, or directly.
   struct MirrorLights {
     const scenes::FlatMirror* mirror = nullptr;
-    std::vector<std::size_t> lights;  // that reach it
-    std::vector<std::size_t> always;  // of these, those that are not left to chance
+    std::vector<std::size_t> lights;  // that reach the mirror
+    std::vector<std::size_t> always;  // of these, the ones with a certain shadow ray
   };
   [[nodiscard]] scenes::LightSample sample_sun(std::size_t light, const Vec3& point,
                                                const Vec3& place) const;
@@ -131,7 +131,7 @@ class LightSampler {
   void add(Light light, int copies);
   void gather_clusters(bool per_group);
   void find_delta_lights();
-  // choose() of what comes by one mirror, or straight; the lights' numbers there begin at `first`.
+  // choose() for lights by one mirror, or directly; their numbers begin at `first`.
   void choose_thrown(const MirrorLights& by, const scenes::Receiver& receiver, double u,
                      std::size_t first, std::vector<scenes::LightChoice>& chosen) const;
   [[nodiscard]] double weight(const Light& light, std::size_t stratum) const {
@@ -146,20 +146,21 @@ class LightSampler {
   SunStrata sun_strata_;
   std::vector<Light> lights_;  // the sources themselves, then their images
   std::size_t sources_ = 0;
-  std::vector<DeltaLight> delta_lights_;     // by number of the light
-  std::vector<MirrorLights> mirror_lights_;       // straight, then by each mirror
-  std::vector<std::size_t> always_;  // lights that are not left to chance
+  std::vector<DeltaLight> delta_lights_;     // by light
+  std::vector<MirrorLights> mirror_lights_;       // directly, then by each mirror
+  std::vector<std::size_t> always_;  // lights with a certain shadow ray
   std::vector<Cluster> clusters_;
-  Cluster surfaces_{scenes::LightTree({}), {}};  // lamps that a ray can meet, by their number there
+  Cluster surfaces_{scenes::LightTree({}), {}};  // lamps with a visible surface, by their numbers
+                                                 // in the tree
   std::vector<scenes::EmitterSet> emitters_;
-  std::vector<scenes::SpotCone> cones_;  // per lamp; of spots
+  std::vector<scenes::SpotCone> cones_;  // per lamp; of spot lamps
   Rgb sun_illuminance_lx_{0.0};
   std::optional<scenes::SunDirections> sun_;
   struct SunPart {
     Rgb illuminance_lx;
     scenes::Cone disc;
     Vec3 direction;
-    double angle_rad;  // of its radius, and rounding
+    double angle_rad;  // angular radius, with a margin for rounding
   };
   std::vector<SunPart> sun_parts_;
   std::optional<scenes::EarthLight> earth_;

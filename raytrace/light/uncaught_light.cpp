@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t points = 2048;
 constexpr std::size_t most_named = 3;
 
-// Sides of triangles, to draw points from evenly over their area.
+// Sides of triangles, to sample points uniformly in area.
 struct Side {
   std::uint32_t triangle = 0;
   bool front = true;
@@ -34,12 +34,12 @@ struct Sides {
   [[nodiscard]] double area_m2() const { return area_to.empty() ? 0.0 : area_to.back(); }
 };
 
-// Luminous exitance that falls straight on a point, and by flat mirrors.
+// Luminous exitance of the light on a point, direct and by flat mirrors.
 struct Falling {
   double straight = 0.0, thrown = 0.0;
 };
 
-// What a side of a triangle sends where no shadow ray follows: shares of what falls on it.
+// Shares of the light on a triangle's side that it redirects where no shadow ray follows.
 struct Sent {
   double by_mirror = 0.0, by_mirror_again = 0.0, by_glass = 0.0;
   [[nodiscard]] bool any() const { return by_mirror_again > 0.0 || by_glass > 0.0; }
@@ -103,7 +103,7 @@ class Finder {
     return sent;
   }
 
-  // The point k of `points` lies on this side.
+  // The side with point k of `points`.
   [[nodiscard]] static const Side& side_of(const Sides& from, std::size_t k) {
     const double wanted = (static_cast<double>(k) + 0.5) / points * from.area_m2();
     const auto at = std::upper_bound(from.area_to.begin(), from.area_to.end() - 1, wanted);
@@ -201,7 +201,7 @@ class Finder {
   LightSampler lights_;
 };
 
-// ": about 3 % of what falls straight from them ("ball")"
+// For example ": about 3 % of what falls straight from them ("ball")"
 std::string extent(const Uncaught& light) {
   std::string text = ": less than 0.1 % of what falls straight from them";
   if (light.share >= 0.001) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light straight from sources that mirrors and glass send where no shadow ray follows it: curved
-// mirrors, glass that bends light, a second flat mirror (scenes/specular_paths.h).
+// Light from sources that mirrors and glass redirect where shadow rays cannot follow: by curved
+// mirrors, glass that bends light, or a second flat mirror (scenes/specular_paths.h).
 #pragma once
 
 #include <string>
@@ -12,25 +12,25 @@
 
 namespace earthshine::raytrace {
 
-// By one way of going on.
+// By mirrors, or by glass.
 struct Uncaught {
-  bool possible = false;             // there is a surface that may send light so
-  double share = 0.0;                // of the light (luminance) that falls straight on surfaces
-  std::vector<std::string> objects;  // those that send it, the brightest first; three at most
+  bool possible = false;             // a surface may redirect light in this way
+  double share = 0.0;                // relative to the direct light on all surfaces (luminance)
+  std::vector<std::string> objects;  // at most three that redirect it, the brightest first
 };
 struct UncaughtLight {
   Uncaught mirrors, glass;
 };
 
-// Which sources are asked about.
+// Sources to consider.
 enum class SourcesOf { All, WithoutSize };
 
-// From shadow rays of 2048 points on all surfaces and as many on mirrors and glass: shares are good
-// to some hundredths of themselves. Flat mirrors are as `indirect` has them.
+// By shadow rays from 2048 points on all surfaces and 2048 on mirrors and glass: shares have a
+// relative error of a few hundredths. `indirect` decides whether flat mirrors are sampled.
 [[nodiscard]] UncaughtLight uncaught_light(const scenes::World& scene, Indirect indirect,
                                            SourcesOf which);
 
-// Light that no setting brings into a picture drawn so.
+// Light that no setting brings into a picture with these options.
 [[nodiscard]] std::vector<std::string> not_captured(const scenes::World& scene,
                                                     const RenderOptions& options);
 

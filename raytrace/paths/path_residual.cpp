@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PathWalker's walks that find what the radiosity solution lacks.
+// PathWalker's residual paths.
 #include <algorithm>
 #include <bit>
 
@@ -34,9 +34,9 @@ std::span<const Rgb> PathWalker::residual_at(const IncomingLight& solution, cons
   return finished();
 }
 
-// From a hit on: (S + T L~ - L~) of the surface that was met, T by one ray; what the next surface
-// lacks itself follows in its turn. Glass that does not bend light hands on what the surfaces
-// behind it send, each with its own part.
+// Adds S + T L~ - L~ of each surface from a hit on; one ray estimates T, and its hit is the next
+// surface. Glass that does not bend light passes on the light of the surfaces behind it, each with
+// its own MIS weight.
 void PathWalker::follow(const IncomingLight& solution, scenes::Hit hit) {
   for (std::uint32_t turns = 1; !hit.missed(); ++turns) {
     const Surface surface = surface_at(hit, scenes::hit_position(world_.scene, hit));
@@ -60,8 +60,8 @@ void PathWalker::follow(const IncomingLight& solution, scenes::Hit hit) {
   }
 }
 
-// A ray off a diffuse surface, cosine-distributed or at a bright patch; false where it leads
-// nowhere.
+// Draws a ray off a diffuse surface, cosine-distributed or aimed at a bright patch; false if its
+// weight is 0.
 bool PathWalker::turn_diffusely(const IncomingLight& solution, const Vec3& origin,
                                 const Vec3& normal, double u, double v) {
   sees_sampled_ = from_camera_ = false;

@@ -50,7 +50,7 @@ base::Image make_image(const Window& window, const std::vector<std::string>& lay
   return image;
 }
 
-// Mean and variance as they go (Welford 1962).
+// Running mean and variance (Welford 1962).
 struct Spread {
   double samples = 0.0, mean = 0.0, squares = 0.0;
 
@@ -65,7 +65,7 @@ struct Spread {
 
 struct PathSums {
   std::vector<Rgb> layers;
-  Spread luminance, reflected;  // of all that is seen; without sources that the camera sees itself
+  Spread luminance, reflected;  // with and without sources that the camera sees itself
   SourceSeen source;
 
   void add(std::span<const Rgb> radiance, const PathWalker& walker) {
@@ -109,7 +109,7 @@ Frame trace_paths(const scenes::World& world, const scenes::Camera& camera,
                   const PathOptions& options, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   check(options);
-  // As for the final gather: emitters that are a large part of the area are met, not sampled.
+  // As in the final gather, paths hit emitters that are a large part of the area; no shadow rays.
   const LightSampler lights(world, Indirect::Radiosity, 1, false, std::nullopt,
                             world.query.specular_paths().mirrors());
   const PathWorld paths = make_world(world, lights, options);
@@ -137,7 +137,7 @@ Frame trace_paths(const scenes::World& world, const scenes::Camera& camera,
                           in_y * static_cast<std::size_t>(options.columns) + in_x);
       PathSums sums{std::vector<Rgb>(paths.layers, Rgb(0.0)), {}, {}, {}};
       for (int path = 0; path < options.paths_per_pixel; ++path) {
-        // A pixel of many paths takes seconds.
+        // A pixel with many paths takes seconds.
         if (path % stop_asked_after == 0 && options.stop && options.stop()) {
           row_rays[y] = walker.rays();
           return;

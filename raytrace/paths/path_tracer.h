@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reference: a plain path tracer. It knows no patches and reads no radiosity, so that it shares
-// only rays, sources and materials with the final gather that it is there to check (render.h).
+// The reference: a plain path tracer. It has no patches and reads no radiosity, so that it shares
+// only rays, sources and materials with the final gather that it checks (render.h).
 //
-// A path starts at the camera and goes on at each surface by one of its mechanisms, chosen by
-// chance: diffuse reflection, Phong lobe, mirror, glass. Each source is reached by one strategy:
+// A path starts at the camera and continues at each surface by one mechanism, drawn at random:
+// diffuse reflection, Phong lobe, mirror or glass. Each source is sampled by one strategy:
 //
-//   seen along mirrors and glass alone from the camera     what the ray meets
-//   point, spot, rectangle, disk lamps; Sun; Earth, if     a shadow ray from every diffuse or
-//   glossy
-//     narrow; emitters that are a small part of the area     surface of the path
-//   Earth, if wide; emitters that are a large part         paths that meet them
-//   any of these by mirror or glass from a surface that    paths that meet them: caustics, found by
-//     is neither                                             chance, of point and spot lamps never
+//   sources seen by the camera, directly or by      camera rays
+//     mirrors and glass only
+//   point, spot, rectangle, disk lamps; Sun;        a shadow ray from every diffuse or
+//     narrow Earth; emitters that are a small         glossy surface of the path
+//     part of the area
+//   wide Earth; emitters that are a large part      paths that hit them
+//   any of these by mirror or glass from a          paths that hit them by chance (caustics);
+//     diffuse or glossy surface                       never for point and spot lamps
 //
-// Paths end by Russian roulette alone, never at a fixed length. Sampling is independent from path
-// to path, hence the variance is the sample variance over the number of paths, without bias. What
-// is not physics is as in the final gather: lamps are seen but block no light; the ambient term
-// lights what the camera sees (also along mirrors and glass) and goes no further.
+// Paths end by Russian roulette only, never at a fixed length. Paths are independent, hence the
+// variance is the sample variance over the number of paths, without bias. Conventions are those of
+// the final gather: lamps are visible but block no light; ambient light is added to surfaces that
+// the camera sees (also by mirrors and glass) and is not reflected further.
 #pragma once
 
 #include <cstdint>
@@ -35,15 +36,15 @@ struct PathOptions {
   bool per_light = false;
   PathSet paths = PathSet::All;
   std::uint64_t seed = 1;
-  // Asked once per row; once it says true the rows that are left stay black.
+  // Called once per row; if it returns true, the remaining rows stay black.
   std::function<bool()> stop = {};
-  Window window = {};  // of the picture, within it; without columns the whole of it
+  Window window = {};  // in the picture; without columns, the whole picture
 };
 
 // Channels R, G, B (cd/m^2); `variance`, of the pixel's mean luminance, (cd/m^2)^2; with per_light
 // light_<group>.R/G/B, whose sum is R, G, B. Box filter over the pixel. The same bytes on any
-// number of threads. In the report `gather` counts diffuse bounces, gather_rays is 0.
-// Throws base::Error (Input) for a picture without pixels or fewer than two paths.
+// number of threads. In the report `gather` counts diffuse bounces, gather_rays is 0. Throws
+// base::Error (Input) for a picture without pixels or fewer than two paths.
 [[nodiscard]] Frame trace_paths(const scenes::World& world, const scenes::Camera& camera,
                                 const PathOptions& options, const Progress& progress = {});
 

@@ -65,7 +65,8 @@ bool PathWalker::is_black(const Surface& surface) {
   return !surface.shines && !base::is_lit(surface.material().transmit);
 }
 
-// Adds what the ray's end sends along it and turns the ray; false where the path ends.
+// Adds the emission and direct light of the ray's hit and draws the next ray; false at the end of
+// the path.
 bool PathWalker::step() {
   const scenes::Hit hit = world_.query.closest(ray_.origin, ray_.direction);
   if (sees_sampled_ && see_lamp(hit)) return false;
@@ -82,7 +83,7 @@ bool PathWalker::step() {
   return go_on(surface, nullptr);
 }
 
-// What the surface emits, and reflects straight from the sources.
+// Adds the surface's emission and its reflection of direct light.
 void PathWalker::shine(const Surface& surface, const scenes::Hit& hit) {
   if (!surface.shines) return;
   const scenes::Material& material = surface.material();
@@ -99,7 +100,7 @@ void PathWalker::add(std::size_t group, const Rgb& radiance) {
   if (group != no_group) radiance_[world_.layer[group]] += weight_ * radiance;
 }
 
-// Of a source itself.
+// Adds light straight from a source.
 void PathWalker::see(std::size_t group, const Rgb& radiance) {
   add(group, radiance);
   if (at_first_ && group != no_group) source_luminance_ += base::luminance(weight_ * radiance);
@@ -129,13 +130,14 @@ bool PathWalker::see_lamp(const scenes::Hit& hit) {
   return seen.has_value();
 }
 
-// One shadow ray to every source that is reached so: L = (E cos / pi) (k_d + k_s cos^n alpha).
+// One shadow ray to every source with shadow rays: L = (E cos / pi) (k_d + k_s cos^n alpha).
 void PathWalker::light_directly(const Surface& surface) {
   const auto take = [&](const Arriving& light, const Rgb& share) {
     rays_.add_shadow(light.kind);
     add(light.group, share * light.radiance);
   };
-  // Each light has numbers of its own, so that a lamp that is switched off moves no other's light.
+  // Each light has its own random numbers, so that switching a lamp off leaves the others
+  // unchanged.
   const base::Key key(static_cast<std::uint64_t>(rng_->next() * 0x1p53), base::Stream::LightSample,
                       0);
   const auto uniform = [&](std::size_t k) -> glm::dvec2 {
@@ -158,8 +160,8 @@ void PathWalker::light_directly(const Surface& surface) {
   shadows_.trace(take);
 }
 
-// Chooses a mechanism in proportion to what it reflects and turns the ray by it. Some of the rays
-// are aimed where `solution` is bright.
+// Draws a mechanism in proportion to its reflectance, and the next ray. Aims some rays at bright
+// patches of `solution`.
 bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
   using Term = scenes::Brdf::Term;
   const scenes::Material& material = surface.material();
@@ -175,7 +177,7 @@ bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
   double choice = rng_->next() * all;
   std::size_t way = Diffuse;
   while (way < Glass && (choice -= share[way]) >= 0.0) ++way;
-  while (share[way] <= 0.0) --way;  // rounding took the choice past the last that has a share
+  while (share[way] <= 0.0) --way;  // rounding moved the choice past the last nonzero share
   weight_ *= all / share[way];
   goes_straight_on_ = way == Glass && straight;
   if (!goes_straight_on_) {
@@ -195,8 +197,8 @@ bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
   return base::is_lit(weight_);
 }
 
-// Whether light that comes the other way is what shadow rays bring to where the path last turned:
-// by glass that does not bend it, by flat mirrors once.
+// Whether shadow rays of the surface where the path last left by turn() carry light along this
+// segment: through straight glass and by at most one flat mirror.
 bool PathWalker::shadow_rays_follow(const Surface& surface, bool through) {
   if (through) return scenes::is_straight_glass(surface.material());
   const scenes::SpecularPaths::Face* face = world_.query.specular_paths().face(surface.triangle);

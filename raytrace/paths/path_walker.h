@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One light path from the camera, of the path tracer (path_tracer.h says who carries what).
+// Traces one light path at a time, for the path tracer (path_tracer.h has the strategies) and for
+// residual paths.
 #pragma once
 
 #include <optional>
@@ -16,16 +17,16 @@
 
 namespace earthshine::raytrace {
 
-// What all paths share; read only.
+// Data that all paths share; read only.
 struct PathWorld : scenes::World {
   const LightSampler& lights;
   std::vector<bool> sampled_emitter;  // per material: shadow rays carry its light
-  std::vector<std::size_t> layer;     // of a light group: its image layer
+  std::vector<std::size_t> layer;     // per light group: its image layer
   std::size_t layers = 1;
   PathSet paths = PathSet::All;
 };
 
-// Follows one path after another; one object per thread.
+// Traces one path after another; one object per thread.
 class PathWalker {
  public:
   explicit PathWalker(const PathWorld& world)
@@ -33,25 +34,25 @@ class PathWalker {
     if (world.scene.earth) earth_.emplace(world.scene);
   }
 
-  // Which stratum of Suns (light/sun_strata.h) the paths that follow carry.
+  // Selects the stratum of Suns (light/sun_strata.h) for the next paths.
   void select_sun_stratum(std::uint64_t first, std::uint64_t k, std::size_t half) {
     sun_stratum_ = world_.lights.sun_strata().of_sample(first, k, half);
   }
 
-  // Radiance that one path brings, cd/m^2 per layer; valid until the next call. All its random
-  // numbers come from `rng`.
+  // Radiance along one path, cd/m^2 per layer; valid until the next call. All its random numbers
+  // come from `rng`.
   [[nodiscard]] std::span<const Rgb> walk(const Ray& start, base::Rng& rng);
-  // What the camera itself saw on the last walk: luminance of sources, cd/m^2, and whether there is
-  // a surface that reflects.
+  // Directly visible on the last walk: luminance of sources, cd/m^2, and whether there is a
+  // reflecting surface.
   [[nodiscard]] double source_luminance() const { return source_luminance_; }
   [[nodiscard]] bool met_surface() const { return met_surface_; }
   // An unbiased estimate of L - L~ along a ray that left a diffuse or glossy surface and met
-  // `first`; L~ is what `solution` reads there. Of rays that share with others, its part.
+  // `first`; L~ is the radiance that `solution` has there. Multiplied by the MIS weight of the ray.
   [[nodiscard]] std::span<const Rgb> residual(const IncomingLight& solution, const Ray& ray,
                                               const scenes::Hit& first, const MisContext& share,
                                               base::Rng& rng);
-  // The mean over the cosine-weighted hemisphere of L - L~ that arrives at a surface point, by one
-  // ray; (u, v) in [0, 1)^2 choose its direction, if it is not aimed at a bright patch.
+  // Estimates the mean of L - L~ over the cosine-weighted hemisphere of a surface point by one ray.
+  // (u, v) in [0, 1)^2 determine its direction, or its target on a bright patch.
   [[nodiscard]] std::span<const Rgb> residual_at(const IncomingLight& solution, const Vec3& origin,
                                                  const Vec3& normal, double u, double v,
                                                  base::Rng& rng);
@@ -59,18 +60,18 @@ class PathWalker {
 
  private:
   struct Surface {
-    scenes::Brdf brdf;  // its normal on the side that the path arrives from
+    scenes::Brdf brdf;  // normal on the side of the incoming ray
     Vec3 position;
     Vec3 outward;  // unit normal of the front
     bool shines;   // reflects and emits: false inside glass
     std::uint32_t triangle;
-    double offset_m;  // of rays that leave it
+    double offset_m;  // of rays that leave the surface
     [[nodiscard]] const scenes::Material& material() const { return brdf.material; }
     [[nodiscard]] Vec3 lifted() const { return position + offset_m * brdf.normal; }
     [[nodiscard]] bool reflects() const { return shines && material().reflects(); }
   };
 
-  // Radiance toward the path by one shadow ray, if nothing is in its way.
+  // Radiance toward the path by one shadow ray, if nothing blocks it.
   struct Arriving {
     Rgb radiance;
     std::size_t group;
@@ -95,7 +96,7 @@ class PathWalker {
   void follow(const IncomingLight& solution, scenes::Hit hit);
   void pass_on(const Surface& surface, bool through);
   bool shadow_rays_follow(const Surface& surface, bool through);
-  void turn() {  // the path leaves a surface that shadow rays light
+  void turn() {  // leaves a surface that shadow rays light
     straight_ = true;
     mirrors_ = 0;
   }
@@ -110,16 +111,16 @@ class PathWalker {
   Ray ray_;
   Rgb weight_{1.0};
   bool sees_sampled_ = true;  // no shadow ray of the last surface carried the sources' light
-  bool from_camera_ = true;   // by mirrors and glass alone
-  bool straight_ = true;      // } since the last turn: only where shadow rays go,
-  int mirrors_ = 0;           // } and by so many flat mirrors
-  bool at_first_ = false;     // on the way from the camera to what it sees itself
+  bool from_camera_ = true;   // by mirrors and glass only
+  bool straight_ = true;      // } since the last turn(): by straight glass and flat mirrors only,
+  int mirrors_ = 0;           // } and the number of flat mirrors
+  bool at_first_ = false;     // on the direct way from the camera to the first surface
   bool met_surface_ = false;
   double source_luminance_ = 0.0;
   std::size_t sun_stratum_ = 0;
-  MisContext share_;                 // of the last ray, with those aimed at bright patches
-  double kept_ = 1.0;              // its part of what the surface sends that it met
-  bool goes_straight_on_ = false;  // as before that surface: through glass
+  MisContext share_;                 // MIS context of the last ray
+  double kept_ = 1.0;              // MIS weight of the surface that it met
+  bool goes_straight_on_ = false;  // passed that surface as straight glass
 };
 
 }  // namespace earthshine::raytrace

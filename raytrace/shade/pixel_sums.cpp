@@ -147,7 +147,7 @@ double PixelSums::sample_variance(std::size_t pixel) const {
   const double n = samples[pixel];
   if (n < 2.0) return 0.0;
   const double sum = luminance[pixel];
-  // Rounding leaves a few units of double precision where all samples are alike.
+  // Equal samples leave a rounding error of a few units of double precision.
   const double spread = luminance2[pixel] - sum * sum / n;
   return spread > 1e-12 * luminance2[pixel] ? spread / (n - 1.0) / n : 0.0;
 }
@@ -158,7 +158,7 @@ double PixelSums::squared_error(std::size_t pixel) const {
     return corner != pixel ? samples[corner] * squared_error(corner) : 0.0;
   }
   if (samples[pixel] == 0) return 0.0;
-  // Of few pixels the halves tell little: there their samples' spread, which is an upper bound.
+  // The halves of few pixels are too uncertain; the spread of their samples is an upper bound.
   if (window.pixel_count() < tuning::few_pixels) return sample_variance(pixel);
   const double n = samples[pixel], off = half_difference[pixel] / n;
   if (spot_luminance.empty() || spot_luminance[pixel] <= 0.0F) return off * off;
@@ -176,7 +176,7 @@ void shade_samples(const ShadingScene& shared, const CameraModel& camera,
   const auto tiles = static_cast<std::size_t>(tiles_x) * static_cast<std::size_t>(tiles_y);
   std::vector<RayCounts> rays_of(tiles);
   std::mutex mutex;
-  // visit(x, y, pixel) of a tile's pixels.
+  // visit(x, y, pixel) for the pixels of a tile.
   const auto for_each_pixel = [&](std::size_t tile, const auto& visit) {
     const int x0 = static_cast<int>(tile % static_cast<std::size_t>(tiles_x)) * tile_edge_px;
     const int y0 = static_cast<int>(tile / static_cast<std::size_t>(tiles_x)) * tile_edge_px;
@@ -224,14 +224,14 @@ void PixelSums::pass(std::size_t pixel, base::Parcel& parcel) {
 
 namespace {
 
-// Samples that leave an edge of that contrast, over its brighter side, an error of edge_for_eye
-// (error_of_edge).
+// Samples that reduce the error of an edge with that contrast, relative to its brighter side, to
+// edge_for_eye (error_of_edge).
 std::uint32_t samples_for_edge(double contrast) {
   return std::bit_ceil(static_cast<std::uint32_t>(
       std::pow(error_of_edge / tuning::edge_for_eye * contrast, 4.0 / 3.0)));
 }
 
-// The greatest of a pixel's eight neighbours in the window.
+// The greatest value of a pixel's eight neighbours in the window.
 std::vector<float> greatest_around(const Window& window, std::span<const float> values) {
   std::vector<float> greatest(values.size(), std::numeric_limits<float>::lowest());
   for (int y = window.y; y < window.y + window.rows; ++y) {

@@ -17,7 +17,7 @@ namespace {
 using base::pi;
 using scenes::no_group;
 
-constexpr std::size_t most_shadow_rays = 256;  // that wait to be traced together
+constexpr std::size_t most_shadow_rays = 256;  // traced together
 
 }  // namespace
 
@@ -186,7 +186,8 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
   };
   const auto choice = light_point(shared_.lights.count());
   chosen_.clear();
-  // A bound of an even lobe, whose light may come steeper than it is seen.
+  // An even lobe may reflect steep light more strongly than its value along the view: this is a
+  // bound.
   const double most =
       surface.material().even_lobe ? 1.0 / std::max(surface.brdf.cos_view, 1e-3) : 1.0;
   shared_.lights.choose(
@@ -213,7 +214,7 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
                   depth == 0, shared_.lights.kind(k)},
                  take_light, k);
   };
-  std::optional<Footprint> footprint;  // that lamps without size ask for
+  std::optional<Footprint> footprint;  // for lamps without size
   for (const auto& [k, chance_weight] : chosen_) {
     Footprint::Places places;
     if (const Vec3* lamp = depth == 0 ? shared_.lights.lamp_point(k) : nullptr) {
@@ -266,7 +267,7 @@ void PixelShader::mirror_and_glass(const Ray& ray, const Surface& surface, const
     }
   }
   if (depth >= tuning::roulette_depth && base::is_lit(reflected) && base::is_lit(through)) {
-    // Deep paths take one way, or their number would grow without end.
+    // Deep paths follow one of the two branches, or their number would grow exponentially.
     const double share = base::max_component(reflected) /
                          (base::max_component(reflected) + base::max_component(through));
     const bool goes_back = rng_.next() < share;

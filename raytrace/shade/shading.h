@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiance along camera rays. The table of who carries which light path stands in render.h.
+// Radiance along camera rays. render.h has the table of light paths and their strategies.
 #pragma once
 
 #include <array>
@@ -18,80 +18,79 @@
 
 namespace earthshine::raytrace {
 
-// What all pixels share; read only.
+// Data that all pixels share; read only.
 struct ShadingScene : scenes::World {
   const LightSampler& lights;
-  const IncomingLight& incoming;        // along gather rays
-  std::vector<std::size_t> layer = {};  // of a light group: its image layer
+  const IncomingLight& incoming;        // radiance along gather rays
+  std::vector<std::size_t> layer = {};  // per light group: its image layer
   std::size_t layers = 1;
-  bool splits_parts = false;  // sums also by Part
+  bool splits_parts = false;  // also sums by Part
   Indirect indirect = Indirect::Radiosity;
-  bool gathers = false;  // cosine rays carry light in this render
-  // Of paths that go on from where gather and lobe rays end, to find what the solution lacks there;
-  // nullptr: there is no solution.
+  bool gathers = false;  // gather rays carry light in this picture
+  // For residual paths from the ends of gather and lobe rays; nullptr: no solution.
   const PathWorld* world = nullptr;
-  const GatherField* field = nullptr;      // nullptr: `gathers` is false
+  const GatherField* field = nullptr;      // nullptr if `gathers` is false
   Vec3 sighting_origin{0.0};               // of Sighting::position
-  PixelFilter filter{scenes::Camera{}};    // of the camera samples
+  PixelFilter filter{scenes::Camera{}};    // for camera samples
   std::uint64_t seed = 1;                  // of camera and gather rays
   std::uint64_t lamp_seed = 1;             // of shadow and lobe rays
   std::vector<bool> sampled_emitter = {};  // per material: shadow rays carry its light
 };
 
-// Whether a surface that the camera meets there is gathered for, and how.
+// Whether light is gathered at a camera ray's hit, and for which reflectances.
 [[nodiscard]] bool gathers_at(const scenes::Scene& scene, const scenes::Hit& hit,
                               GatherRequest& request);
 
-// Light of a gather point that a pixel's samples reflect: sums over samples of k_d and k_s.
+// Sums over a pixel's samples of k_d and k_s at a gather point.
 struct FieldTerm {
   std::uint32_t point = 0;
   glm::vec3 diffuse{0.0F}, lobe{0.0F};
 };
 
 // Shades the samples of one pixel after another; one object per thread. Samples with even and odd
-// numbers are two halves, independent of each other.
+// numbers form two independent halves.
 class PixelShader {
  public:
   explicit PixelShader(const ShadingScene& shared);
 
-  // Keys all random numbers to the pixel (its number in the whole picture) and clears the sums.
-  // Samples first .. first + count - 1 of the pixel follow. by_layer: fills halves_differ().
+  // Keys all random numbers to the pixel (its number in the whole picture) and clears the sums for
+  // samples first .. first + count - 1 of the pixel. by_layer: fills halves_differ().
   void begin_pixel(const CameraModel& camera, int x, int y, std::size_t first, std::size_t count,
                    bool by_layer);
-  // The pixel that the next sample falls into (a wide pixel filter puts some beside their own):
-  // there the gather field is looked up.
+  // Sets the pixel that the next sample falls into (a wide pixel filter displaces samples), for
+  // look-ups in the gather field.
   void look_near(int x, int y) {
     x_ = x;
     y_ = y;
   }
   void add_sample(std::size_t sample, const Ray& ray, const scenes::Hit& hit);
-  void end_pixel();  // traces what is still queued
+  void end_pixel();  // traces the queued rays
 
   // Sum over samples of radiance, per image layer; then, with splits_parts, per Part.
   [[nodiscard]] std::span<const Rgb> sums() const { return sums_; }
-  // Luminance of each sample, all layers together.
+  // Luminance of each sample, sum of all layers.
   [[nodiscard]] std::span<const double> sample_luminance() const { return sample_luminance_; }
-  // Sums over samples of the light that comes straight from a source that the camera sees.
+  // Sums over samples of light straight from a source that the camera sees.
   [[nodiscard]] const SourceSeen& source() const { return source_; }
-  // Of each layer, the luminance that samples of the first half brought less that of the second.
+  // Per layer, the luminance of the first half's samples minus that of the second half's.
   [[nodiscard]] std::span<const double> halves_differ() const { return halves_differ_; }
-  // What the samples read from gather points, which is in their luminance but not in sums().
+  // Light that the samples read from gather points: in sample_luminance(), but not in sums().
   [[nodiscard]] std::span<const FieldTerm> field_terms() const { return terms_; }
-  [[nodiscard]] RayCounts rays() const;  // all that were cast for samples so far
+  [[nodiscard]] RayCounts rays() const;  // all rays cast so far
 
  private:
-  // What kind of ray asks, which decides what it may see of the sources themselves.
+  // Kind of the ray; it decides which sources the ray may see.
   enum class Seen { ByCamera, ByLobe };
   struct Surface {
     scenes::Brdf brdf;
     Vec3 position;
     Vec3 outward;     // unit normal of the front
-    double offset_m;  // of rays that leave it
+    double offset_m;  // of rays that leave the surface
     [[nodiscard]] const scenes::Material& material() const { return brdf.material; }
     [[nodiscard]] Vec3 lifted() const { return position + offset_m * brdf.normal; }
   };
 
-  // counter: the kind of ray it is.
+  // counter: counts this kind of ray.
   void trace(const Ray& ray, const Rgb& weight, int depth, Seen seen, std::uint64_t& counter);
   void shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weight, int depth, Seen seen);
   // The half of the current sample, and its number in it.
@@ -103,7 +102,7 @@ class PixelShader {
   bool see_lamp(const Ray& ray, double nearer_than_m, const Rgb& weight, int depth);
   void direct(const Ray& ray, const Surface& surface, const Rgb& weight, int depth);
   void diffuse(const Surface& surface, const Rgb& weight, int depth);
-  // Whether gather points may stand for what is met after so many mirrors and panes.
+  // Whether gather points exist for a hit after so many mirrors and panes.
   [[nodiscard]] bool has_points(int depth) const {
     return shared_.field != nullptr && depth == (mirror_ ? 1 : 0);
   }
@@ -117,12 +116,12 @@ class PixelShader {
   void mirror_and_glass(const Ray& ray, const Surface& surface, const Rgb& weight, int depth,
                         Seen seen);
 
-  // What a shadow ray brings if nothing is in its way.
+  // Light of a shadow ray that nothing blocks.
   struct Arriving {
     Rgb radiance{0.0};
-    Rgb specular{0.0};  // the part of it by a highlight
+    Rgb specular{0.0};  // its highlight
     std::size_t layer = 0, sample = 0;
-    bool by_camera = true;  // at a surface that the camera sees itself
+    bool by_camera = true;  // at a surface that the camera sees directly
     scenes::LightKind kind = scenes::LightKind::Sun;
   };
   void take(const Arriving& light, const Rgb& share);
@@ -132,8 +131,8 @@ class PixelShader {
     MisContext share;
     Part part = Part::Indirect;
     std::size_t sample = 0;
-    std::uint64_t number = 0;      // in the sample: the key of what follows it
-    double residual_weight = 1.0;  // of that path; 0: it is not followed
+    std::uint64_t number = 0;      // number in the sample: key of the residual path
+    double residual_weight = 1.0;  // of the residual path; 0: none
   };
   void queue_gather(const Vec3& origin, const GatherRay& ray);
   void add_residual(const GatherRay& ray, const scenes::Hit& hit);
@@ -150,7 +149,7 @@ class PixelShader {
   const ShadingScene& shared_;
   RayCounts rays_;
   std::vector<Rgb> sums_;
-  std::vector<Rgb> scratch_;  // one per layer, and what came straight from the sky
+  std::vector<Rgb> scratch_;  // one per layer, then light straight from the sky
   std::vector<double> sample_luminance_, halves_differ_;
   std::size_t sample_ = 0, first_sample_ = 0;
   SourceSeen source_;
@@ -158,11 +157,11 @@ class PixelShader {
   std::vector<FieldTerm> terms_;
   std::optional<PathWalker> walker_;
   int x_ = 0, y_ = 0;
-  std::optional<MirrorPlane> mirror_;  // of the first surface, while what it shows is shaded
+  std::optional<MirrorPlane> mirror_;  // mirror of the first hit, while shading its reflection
   const CameraModel* camera_ = nullptr;
   int pixel_x_ = 0, pixel_y_ = 0;
   std::uint64_t pixel_ = 0, gathered_ = 0;
-  std::array<base::SobolOwen4, 2> gather_points_;  // by half
+  std::array<base::SobolOwen4, 2> gather_points_;  // per half
   std::vector<scenes::LightChoice> chosen_;
   base::Rng rng_;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PixelShader's diffuse light, its ray queues, eight rays at a time, and what its samples scatter.
+// PixelShader's diffuse light, its ray queues (eight rays at a time), and the samples' luminances.
 #include <algorithm>
 #include <cmath>
 
@@ -36,7 +36,7 @@ FieldTerm& PixelShader::term_of(std::size_t point) {
   return terms_.emplace_back(FieldTerm{static_cast<std::uint32_t>(point)});
 }
 
-// sum: of the layers of a gather point's radiance; weight: what of it the camera sees.
+// sum: of the layers of a gather point's radiance; weight: from this to the camera.
 void PixelShader::count_read(const glm::vec3& sum, const Rgb& weight) {
   sample_luminance_[sample_ - first_sample_] += base::luminance(weight * Rgb(sum));
 }
@@ -92,7 +92,7 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
     ray.direction = frame.to_world({r * std::cos(phi), r * std::sin(phi), cosine});
     if (shares) ray.share.cosine = double(cosine);
     ray.number = ++gathered_;
-    // One of them is followed for all: the residual is small, and estimating it dear.
+    // One residual path for all rays: the residual is small and costly.
     ray.residual_weight = k == 0 ? count : 0.0;
     queue_gather(origin, ray);
   }
@@ -128,7 +128,7 @@ void PixelShader::queue_gather(const Vec3& origin, const GatherRay& ray) {
   if (++gather_count_ == width) flush_gather();
 }
 
-// What the solution lacks where the ray ended, by a path that goes on from there.
+// Adds the residual L - L~ at the ray's hit, by a path that continues there.
 void PixelShader::add_residual(const GatherRay& ray, const scenes::Hit& hit) {
   base::Rng rng(
       base::Key(shared_.seed, base::Stream::Residual, pixel_).with(ray.sample).with(ray.number));
@@ -149,7 +149,7 @@ void PixelShader::flush_gather() {
     std::fill(scratch_.begin(), scratch_.end(), Rgb(0.0));
     const scenes::Hit hit{hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0};
     shared_.incoming.add(hit, ray.direction, ray.share, ray.weight, scratch_, rays_);
-    // What came straight from the sky reached the surface directly.
+    // light straight from the sky is direct
     const Part part = ray.part == Part::Indirect && hit.missed() ? Part::Direct : ray.part;
     for (std::size_t layer = 0; layer < shared_.layers; ++layer) {
       add(layer, ray.sample, part, scratch_[layer]);

@@ -15,7 +15,7 @@ class ShadingSetup {
   ShadingSetup& operator=(const ShadingSetup&) = delete;
 
   [[nodiscard]] ShadingScene& shared() { return shared_; }
-  // For paths that find what the solution lacks, or gather points whose lobes have none.
+  // For residual paths, and for lobe rays at gather points.
   [[nodiscard]] const PathWorld& world() const { return world_; }
   [[nodiscard]] const CameraModel& camera() const { return camera_; }
 

@@ -4,9 +4,9 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Of a region's points with samples: noise of one sample is the sum of all noise over that of 1 /
-// n. Samples are more where there is more noise: so the noise of as many samples as each point has
-// adds up to what all have.
+// Over a region's points with samples: the noise of one sample is the sum of the noise over the sum
+// of 1 / n. Noisy points have more samples; with these sums, the predicted noise of the points adds
+// up to their measured noise.
 struct Around {
   double noise = 0.0, per_sample = 0.0;
 };
@@ -23,8 +23,7 @@ void regularise_isolated_variance(const Neighbours& neighbours, const Window& wi
   };
   const auto stands_alone = [&](std::size_t p) {
     if (p < grid) return neighbours.is_alone(p);
-    return shared.inverse_dof[0][p] <=
-           0.0F;  // those beside a base or among mirror neighbours tell 1 / N
+    return shared.inverse_dof[0][p] <= 0.0F;  // points with a base or mirror neighbours have 1 / N
   };
   std::vector<Around> regions(region_of(window.pixel_count() - 1, columns) + 1U);
   for (std::size_t p = 0; p < points; ++p) {

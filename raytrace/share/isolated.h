@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gather points that stand alone: of the grid, without neighbours, and off-grid points that neither
-// a point of the grid nor mirror neighbours stand beside. All that they know of their noise is what
-// the halves of their own few rounds differ by. That is right on the average over such points, but
-// the halves of one may agree by chance, and a point that seems exact would get no more samples for
-// ever.
+// Isolated gather points: grid points without neighbours, and off-grid points without a grid point
+// or mirror neighbours on their surface. Only the half differences of their few rounds measure
+// their noise. They are right on average, but the halves of one point may agree by chance, and a
+// point that seems exact would never get more samples.
 //
-// So the noise that is likely tells where samples go: half the point's own, half that of as many
-// samples of any point of its region of the picture. It is not stated: where noise differs from
-// surface to surface, and samples with it, it would be too large (docs/log/renderer.md).
+// Allocation therefore uses half of the point's own variance and half of the variance that other
+// points of its region predict for as many samples. This value is not stated: where noise differs
+// from surface to surface, and the sample counts with it, it would be too large
+// (docs/log/renderer.md).
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which gather points share, and means over them.
+// Neighbourhoods of gather points, and means over them.
 #include <algorithm>
 
 #include "base/parallel.h"
@@ -12,15 +12,14 @@ namespace {
 constexpr std::size_t mask_levels = share_levels + tuning::window_blurs - 1;
 constexpr std::size_t taps = 5;
 constexpr std::array<float, taps> spline = {1.0F / 16, 1.0F / 4, 3.0F / 8, 1.0F / 4, 1.0F / 16};
-// The five of a point's row, then those of its column.
+// The five of a point's row, then the five of its column.
 constexpr std::uint16_t all_bits = (1U << (2U * taps)) - 1U;
 constexpr std::uint16_t own_bits = (1U << (taps / 2U)) | (1U << (taps + taps / 2U));
 
-// Rounding of single-precision positions.
+// Tolerance for the rounding of single-precision positions.
 float slack(const GatherPoint& point) { return 0.02F * point.spacing_m; }
 
-// The triangle that each shows, and the mirror that it is seen in; of points without a surface
-// none.
+// The triangle of each point and the mirror that shows it; no_face without a surface.
 constexpr std::uint64_t no_face = ~std::uint64_t{0};
 std::vector<std::uint64_t> faces_of(const std::vector<GatherPoint>& points, std::size_t count) {
   std::vector<std::uint64_t> faces(count);
@@ -33,11 +32,10 @@ std::vector<std::uint64_t> faces_of(const std::vector<GatherPoint>& points, std:
 }
 
 constexpr std::size_t rows_at_once = 4;
-// Of those that are as far apart as neighbours.
+// Rows of a chain; they are `step` apart, as neighbours are.
 constexpr std::size_t longest_chain = 16;
 
-// Weights of those of five neighbours whose bits are set, for the points of a row:
-// share[tap * width + x].
+// Weights of five neighbours whose bits are set, for the points of a row: share[tap * width + x].
 void find_shares(const std::uint16_t* mask, std::size_t first_bit, std::size_t width,
                  float* share) {
   for (std::size_t k = 0; k < taps; ++k, share += width) {
@@ -47,7 +45,7 @@ void find_shares(const std::uint16_t* mask, std::size_t first_bit, std::size_t w
   }
 }
 
-// The sum of five rows by their shares.
+// Weighted sum of five rows.
 void add_up(const float* share, const std::array<const float*, taps>& rows, std::size_t width,
             float* sum) {
   const float *s0 = share, *s1 = s0 + width, *s2 = s1 + width, *s3 = s2 + width, *s4 = s3 + width;
@@ -83,7 +81,8 @@ void Neighbours::sift(std::size_t level, const Keep& keep) {
 
 Neighbours::Neighbours(const Window& window, const std::vector<GatherPoint>& points)
     : columns_(window.columns), rows_(window.rows), masks_(mask_levels) {
-  // Most lie on the same face, side by side in memory: points are looked at where they do not.
+  // Most neighbours lie on the same face. Comparing faces, side by side in memory, avoids reading
+  // their points.
   const std::vector<std::uint64_t> faces = faces_of(points, window.pixel_count());
   for (std::size_t level = 0; level < mask_levels; ++level) {
     masks_[level].resize(window.pixel_count());
@@ -134,13 +133,13 @@ void Neighbours::blur(std::size_t level, const Planes& values, const std::vector
   });
 }
 
-// Rows as far apart as neighbours, from `first` on: each is blurred along itself once, and five of
-// these, one above the other, make one of the means.
+// A chain of rows, `step` apart from `first` on. Each row is blurred along itself once; five
+// blurred rows, one above the other, give one row of means.
 void Neighbours::blur_chain(std::size_t level, std::size_t first, const Planes& values,
                             const std::vector<float>* weight, Planes& means) const {
   const auto width = static_cast<std::size_t>(columns_), rows = static_cast<std::size_t>(rows_);
   const std::size_t step = std::size_t{1} << level;
-  // Of each of the last five rows: its planes, and the sum of the weights.
+  // The last five rows: the planes of each and its sum of weights.
   const std::size_t planes = values.size() + 1;
   std::vector<float> along(taps * planes * width), share(taps * width), sum(width);
   const auto row_of = [&](std::size_t y) { return &along[y / step % taps * planes * width]; };
@@ -151,7 +150,7 @@ void Neighbours::blur_chain(std::size_t level, std::size_t first, const Planes& 
     }
     std::array<const float*, taps> from;
     for (std::size_t k = 0; k < taps; ++k) {
-      // Beyond the picture any row will do: it has no share.
+      // Outside the picture any row will do, because its weight is 0.
       const std::size_t at = y + k * step;
       from[k] = row_of(at < 2 * step || at - 2 * step >= rows ? y : at - 2 * step);
     }
@@ -171,14 +170,14 @@ void Neighbours::blur_chain(std::size_t level, std::size_t first, const Planes& 
   }
 }
 
-// Sums over the five of every point's row, plane after plane, and last those of their weights.
+// Sums over the five neighbours in the row of every point: plane after plane, then the weights.
 void Neighbours::blur_along(std::size_t level, std::size_t y, const Planes& values,
                             const std::vector<float>* weight, float* sums) const {
   const auto width = static_cast<std::size_t>(columns_), rows = static_cast<std::size_t>(rows_);
   const std::size_t step = std::size_t{1} << level, margin = 2 * step, begin = y * width;
   std::vector<float> share(taps * width), copy;
   find_shares(&masks_[level][begin], 0, width, share.data());
-  // What lies beside the row in memory has no share: only the first and last rows need margins.
+  // Values beside the row in memory have weight 0: only the first and last rows need margins.
   const bool inside = begin >= margin && begin + width + margin <= width * rows;
   if (!inside) copy.resize(width + 2 * margin);
   const auto load = [&](const std::vector<float>& plane) -> const float* {

@@ -9,8 +9,8 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Signal over noise of off-grid points that no point of the grid may stand for, of whose own all is
-// kept; and noise over signal of those without samples, which have nothing of their own to keep.
+// Ratio of signal to noise of off-grid points without a base, which keep their own value; and of
+// noise to signal of points without samples.
 constexpr float unsampled_noise = 1e6F;
 
 float luminance_at(const std::vector<glm::vec3>& radiance, std::size_t point, std::size_t layers,
@@ -20,9 +20,9 @@ float luminance_at(const std::vector<glm::vec3>& radiance, std::size_t point, st
   return static_cast<float>(base::luminance(Rgb(sum)));
 }
 
-// What off-grid points that are held to be alike say of how far they are off what stands for them:
-// the squares found, less the noise of these. Those whose noise is small against the signal count
-// the more (weights 1 / (s + q)^2, which are best for normal numbers; found in a few rounds).
+// Differences of the off-grid points of a region from their shared values: mean square minus noise.
+// Differences with less noise have more weight (1 / (s + q)^2, optimal for normal noise; found by a
+// few iterations).
 class Differences {
  public:
   void add(float squared, float noise, float samples) {
@@ -42,7 +42,7 @@ class Differences {
     return static_cast<float>(of_sample_ / double(samples));
   }
   [[nodiscard]] float signal() const { return static_cast<float>(signal_); }
-  // Signal that noise may hide: the standard error of what is found of none.
+  // The standard error of the signal if the true signal is 0.
   [[nodiscard]] float hidden() const { return static_cast<float>(hidden_); }
   // 1 / N, for Stein's term.
   [[nodiscard]] float inverse_dof(float noise) const {
@@ -142,7 +142,7 @@ void share_among_mirror_neighbours(const MirrorNeighbourhood& mirror_neighbours,
   base::parallel_chunks(off_grid_points, 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       float count = 0.0F, all = 0.0F, of_sample = 0.0F;
-      double off = 0.0, squared = 0.0;  // from its own
+      double off = 0.0, squared = 0.0;  // sums of differences from its own value, and of squares
       each(k, [&](std::size_t mirror_neighbour) {
         const double from_own =
             double(estimate.mean(grid + mirror_neighbour)) - double(estimate.mean(grid + k));
@@ -164,7 +164,7 @@ void share_among_mirror_neighbours(const MirrorNeighbourhood& mirror_neighbours,
       keep[k] = samples > 0.0F ? wiener_gain(s, q, 1.0F / count) : 0.0F;
     }
   });
-  // A layer after the other: of all of them there may be as much as of the whole picture.
+  // One layer at a time: all layers may take as much memory as the whole picture.
   std::vector<glm::vec3> own(off_grid_points);
   for (std::size_t layer = 0; layer < shared.layers; ++layer) {
     const auto value = [&](std::size_t k) -> glm::vec3& {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gather points off the grid: where a pixel shows several surfaces, one for each that is not behind
-// its centre. What nearby points of the grid say of the same surface is told apart from what is the
-// case there by the off-grid point's own samples, as far as these know better (Wiener, as in
-// share.h):
+// Off-grid gather points: a pixel that shows several surfaces has one for each surface that is not
+// behind its centre. Grid points nearby on the same surface give a shared value. The point's own
+// samples correct it by a Wiener gain, as in share.h:
 //   value = shared + c (own - shared),  c = s / (s + q)
-// s: mean square of the true difference, a mean over the off-grid points of a region, no less
-// than the noise there may hide; q: noise of as many samples as the off-grid point has, each of
-// which has the mean noise of a sample there.
+//   s  mean square of the true difference, over the off-grid points of a region; at least its own
+//      standard error
+//   q  noise of as many samples as the off-grid point has, from the mean noise of a sample there
 #pragma once
 
 #include <bit>
@@ -21,27 +20,27 @@
 namespace earthshine::raytrace {
 
 struct OffGridPoint {
-  std::uint32_t pixel = 0;  // of the window
+  std::uint32_t pixel = 0;  // index in the window
   std::uint32_t base =
       0;  // nearest point of the grid on the same surface; no_base if there is none
-  std::uint32_t region = 0;  // region_of() its pixel
-  float cover = 0.0F;        // about, of the pixel
+  std::uint32_t region = 0;  // region_of() the pixel
+  float cover = 0.0F;        // approximate share of the pixel
 };
 inline constexpr std::uint32_t no_base = 0xffffffffU;
 
-// Parts of the picture, over which off-grid points are held to be alike, row by row.
+// Square regions of the picture, row by row. Off-grid points of a region share s and q.
 [[nodiscard]] inline std::uint32_t region_of(std::size_t pixel, std::size_t columns) {
   const std::size_t x = pixel % columns / tuning::region_px,
                     y = pixel / columns / tuning::region_px;
   return static_cast<std::uint32_t>(y * (columns / tuning::region_px + 1) + x);
 }
 
-// OffGrid that lie side by side on one surface, each among its own: the last ones of some pixels.
+// Off-grid points on one surface that a mirror shows: the last points of neighbouring pixels.
 struct MirrorNeighbourhood {
   std::span<const OffGridPoint> off_grid_points;
-  std::span<const std::uint32_t> first;  // of a pixel, and behind the last
+  std::span<const std::uint32_t> first;  // per pixel, and one past the last
   std::span<const std::uint64_t>
-      masks;                   // of an off-grid point: bits of the pixels about it, row by row
+      masks;                   // per off-grid point: a bit per pixel around it, row by row
   std::ptrdiff_t columns = 0;  // of the window
   template <class Visit>
   void each(std::size_t off_grid_point, const Visit& visit) const {
@@ -57,13 +56,13 @@ struct MirrorNeighbourhood {
   }
 };
 
-// Completes `shared`, which knows the points of the grid, by the off-grid points: point grid + k of
-// the estimate is off-grid points[k].
+// Adds the off-grid points to `shared`, which has the grid points: point grid + k of the estimate
+// is off_grid_points[k].
 void add_off_grid_points(std::span<const OffGridPoint> off_grid_points, const Estimate& estimate,
                          Shared& shared);
 
-// Then off-grid points that have mirror neighbours are told apart from the mean of these in the
-// same way; s and q are means over the mirror neighbours.
+// Then shrinks off-grid points with mirror neighbours to the mean of these in the same way; s and q
+// are means over the mirror neighbours.
 void share_among_mirror_neighbours(const MirrorNeighbourhood& mirror_neighbours,
                                    const Estimate& estimate, Shared& shared);
 

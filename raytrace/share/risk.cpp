@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The squared error that keeping details leaves.
+// Expected squared error after shrinkage (SURE).
 #include <limits>
 
 #include "base/parallel.h"
@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::size_t points_at_once = 256;
 
-// What is kept of the noise and not kept of the signal. few: 1 / N. c = 1 - q / (D - k q), so c' =
-// (1 - c)^2 / q; no choice is off by more than the detail.
+// Remaining noise, lost signal and Stein's term; inverse_dof: 1 / N. c = 1 - q / (D - k q), so that
+// c' = (1 - c)^2 / q. The sum is at most the detail.
 float residual_risk(float s, float q, float inverse_dof) {
   const float share = wiener_gain(s, q, inverse_dof), ratio = 1.0F - share;
   const float kept = share * share * q, lost = ratio * ratio * s;
@@ -19,8 +19,8 @@ float residual_risk(float s, float q, float inverse_dof) {
   return kept + lost + (share > 0.0F ? choice : 0.0F);
 }
 
-// Of details that nothing is kept of the signal that is found is mostly chance: it is held to that
-// of the next coarser ones.
+// Where the gain is 0, the measured signal is mostly chance: the signal of the next coarser level
+// limits it.
 float clamped_signal(float s, float q, float inverse_dof, float coarser) {
   const float held = std::min(std::max(s, 0.0F), coarser);
   return wiener_gain(s, q, inverse_dof) > 0.0F ? s : held;
@@ -41,7 +41,7 @@ void Shared::squared_errors_with(double factor, std::size_t begin, std::size_t e
                   *n = &inverse_dof[level][begin];
       for (std::size_t k = 0; k < count; ++k) {
         clamped[k] = clamped_signal(s[k], q[k], n[k], coarser[k]);
-        // Of off-grid points, and in small pictures, there are no coarser ones.
+        // Off-grid points and small pictures have no coarser levels.
         coarser[k] = clamped[k] + q[k] > 0.0F ? clamped[k] : coarser[k];
       }
       if (level == 0 && !hidden.empty()) {

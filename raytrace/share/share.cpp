@@ -11,9 +11,9 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Sums of squared correlations of a level's details as many pixels apart as the first blur of their
-// window steps over, of independent values on an endless plane: squares of normal details are
-// correlated so.
+// Per level, the sum of squared correlations between details at the distances that the first blur
+// of their window uses, for independent values on an infinite plane. Squares of normal details have
+// these correlations.
 constexpr std::array<float, share_levels> alike = {1.15F, 1.10F, 1.13F, 1.14F, 1.14F};
 constexpr std::size_t first_blur(std::size_t level) { return level > 0 ? 1 : 0; }
 constexpr std::size_t layers_at_once = 4;
@@ -21,7 +21,7 @@ constexpr std::size_t points_at_once = 1024;
 
 class Sharer {
  public:
-  // own: sums of the estimate, whose place the shared means take.
+  // own: sums of the estimate, whose memory the denoised means reuse.
   Sharer(const Neighbours& neighbours, const Estimate& estimate, std::vector<glm::vec3> own,
          Keep how)
       : neighbours_(neighbours),
@@ -34,7 +34,7 @@ class Sharer {
 
   Shared run() {
     shared_.layers = estimate_.layers;
-    shared_.resize(estimate_.samples.size());  // off-grid points follow
+    shared_.resize(estimate_.samples.size());  // room for off-grid points
     for (std::vector<float>& of : keep_) of.assign(points_, 0.0F);
     signs_ = draw_signs(neighbours_, estimate_);
     if (all_) {
@@ -45,7 +45,7 @@ class Sharer {
     for_all([&](std::size_t begin, std::size_t end) {
       shared_.squared_errors_with(1.0, begin, end, &shared_.squared_error[begin]);
     });
-    squares_.clear();  // the layers take more than both
+    squares_.clear();  // frees memory: the layers need more than both
     blurred_.clear();
     take_layers();
     return std::move(shared_);
@@ -54,13 +54,13 @@ class Sharer {
  private:
   using Planes = Neighbours::Planes;
 
-  // That a value of that level is the mean of, about.
+  // About the number of samples in a value of that level.
   [[nodiscard]] const std::vector<float>& samples_at(std::size_t level) const {
     return level == 0 ? estimate_.samples : samples_around_[level - 1];
   }
 
-  // Values of one level become those of the next; the difference is the detail. Where nothing was
-  // sampled there is none. Neighbours count by the samples that they are the mean of.
+  // Values of one level become values of the next; the difference is the detail, 0 without samples.
+  // Neighbours are weighted by their numbers of samples.
   void step(std::size_t level, Planes& values, Planes& detail) {
     neighbours_.blur(level, values, &samples_at(level), coarse_);
     if (detail.empty()) detail = neighbours_.planes(values.size());
@@ -86,7 +86,7 @@ class Sharer {
     return sign_of(signs_[p], field);
   }
 
-  // Means, and fields of their noise.
+  // The means, and fields of their noise.
   [[nodiscard]] Planes means_and_noise() const {
     Planes values = neighbours_.planes(1 + tuning::noise_fields);
     for_all([&](std::size_t begin, std::size_t end) {
@@ -100,7 +100,7 @@ class Sharer {
     return values;
   }
 
-  // Where all is kept: the noise of the points themselves.
+  // With Keep::All: the noise of the points themselves.
   void tell_noise() {
     expected_.resize(points_);
     for (std::size_t p = 0; p < points_; ++p) {
@@ -140,8 +140,8 @@ class Sharer {
     });
   }
 
-  // Squares over what noise is expected of the samples there: of the values, the mean of those of
-  // the fields of noise, and what weight this gives each.
+  // Squares over the noise that is expected from the sample counts: of the values, the mean over
+  // the noise fields, and the resulting weight.
   void take_squares(const Planes& values) {
     if (squares_.empty())
       squares_ = neighbours_.planes(all_ ? Scatter : Scatter + tuning::scatter_fields);
@@ -158,9 +158,9 @@ class Sharer {
     });
   }
 
-  // What both squares differ by, with random signs: the square of its mean over a window is the
-  // variance of s there. It holds the chance of each point's own mean and noise, which all
-  // fields share, and how unevenly the signal lies.
+  // The difference of both squares with random signs: the square of its mean over a window
+  // estimates the variance of s there. It includes the chance in the means and the noise of single
+  // points, which all noise fields share, and the uneven distribution of the signal.
   void take_scatter(std::size_t level) {
     const float root = std::sqrt(alike[level]);
     for_all([&](std::size_t begin, std::size_t end) {
@@ -173,9 +173,9 @@ class Sharer {
     });
   }
 
-  // Relative mean squares of the details' noise, by the samples there and around. Of a
-  // sample-weighted mean over B-spline weights k: own weight w = k0 n / N, N = sum k n; noise of
-  // the own value (1 - w)^2 / n, of the others' about (K / N - w^2 / n), K = sum k^2.
+  // Relative mean squares of the details' noise, from the sample counts. In a mean weighted by
+  // samples n and B-spline weights k, a point has the weight w = k0 n / N, N = sum k n. The noise
+  // of its own value is (1 - w)^2 / n, of the others about (K / N - w^2 / n), K = sum k^2.
   void expect(std::size_t level) {
     constexpr float own = 9.0F / 64.0F, squares = 0.0748F;
     expected_.resize(points_);
@@ -207,11 +207,11 @@ class Sharer {
     });
   }
 
-  // A few layers at a time: planes of all of them would take more memory than all else.
+  // A few layers at a time: planes of all layers would take more memory than everything else.
   void take_layers() {
     if (!in_place_) {
       shared_.radiance.reserve(estimate_.samples.size() *
-                               estimate_.layers);  // off-grid points follow
+                               estimate_.layers);  // room for off-grid points
       shared_.radiance.resize(points_ * estimate_.layers);
     }
     for (std::size_t first = 0; first < estimate_.layers; first += layers_at_once) {
@@ -225,7 +225,7 @@ class Sharer {
       return p * estimate_.layers + first + k / 3;
     };
     const std::vector<glm::vec3>& sums = in_place_ ? shared_.radiance : estimate_.sum;
-    // Point by point where all layers of one lie side by side, plane by plane where its planes do.
+    // Loops over points outside, because the layers of a point are adjacent in memory.
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
         if (estimate_.samples[p] <= 0.0F) continue;
@@ -264,7 +264,8 @@ class Sharer {
   Shared shared_;
   std::array<std::vector<float>, share_levels> keep_;
   std::vector<std::uint8_t> signs_;
-  std::array<std::vector<float>, share_levels - 1> samples_around_;  // means of a level's
+  std::array<std::vector<float>, share_levels - 1> samples_around_;  // per level: mean numbers of
+                                                                     // samples
   std::vector<float> expected_;
   Planes coarse_, squares_, blurred_;
 };

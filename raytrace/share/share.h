@@ -1,31 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is estimated by chance at every gather point of a picture, shared between neighbours on the
-// same surface as far as its own samples allow.
+// Denoises the Monte Carlo estimates at gather points by wavelet shrinkage over neighbours on the
+// same surface.
 //
-// The estimates are split into details of 1, 2, 4, 8 and 16 pixels and a rest (a wavelet transform
-// with holes over the points of one surface; Dammertz et al. 2010). Every round of samples comes in
-// two independent halves of as many, with sums a and b. (a - b)^2 has the variance of a + b, and
-// added over the rounds that of the whole sum; its root over the samples has the noise of the mean,
-// by whatever sign is drawn for each point: so many fields of noise as are wanted, whose means over
-// small surfaces are known better than one (the wild bootstrap; Wu 1986). Of a detail d, means over
-// its surroundings are, with e the noise that is expected of the samples that a detail is made of,
-// relative to others,
-//   noise  q = e <n^2 / e> over these fields' details n
+// An à-trous wavelet transform over the points of one surface (Dammertz et al. 2010) splits the
+// estimates into details of 1, 2, 4, 8 and 16 pixels and a rest. Every round of samples has two
+// independent halves of equal size, with sums a and b. (a - b)^2 estimates the variance of a + b;
+// its sum over the rounds estimates the variance of the whole sum. Its root over the samples, with
+// a random sign per point, is a field of noise (wild bootstrap; Wu 1986). Several fields give
+// steadier means over small surfaces than one. For a detail d of the means and n of the noise
+// fields, with <> the mean over a window and e the noise that is expected from the sample counts
+// alone,
+//   noise  q = e <n^2 / e>
 //   signal s = (<d^2 / e> - <n^2 / e>) / <1 / e>,     energy D = s + q
-// and the detail is kept by c = s / (s + q) or less (Wiener), which leaves, in the mean and with
-// what choosing c by the same d makes it look better (Stein 1981; N: how many normal details the
-// means are over),
-//   (1 - c)^2 s + c^2 q + 4 q D c'(D) / N,   no more than D together.
-// N is not told by how far the fields of noise are apart, since all are made of the same rounds: s
-// is off by chance as a mean of (d^2 - n^2) / e with random signs is, whose square is 2 / N of q^2
-// (with more rounds n is known better, and N larger).
-// Where the s / q of a level differ by no more than that all over the picture, as where all is
-// smooth, what each is off their mean says nothing and is left out of s (signals.h). Noise of
-// single pixels is a hundred times all that is left: where nothing of a detail is kept, s is held
-// between none and that of the next coarser ones. An edge has half of their signal, what is smooth
-// a fourth or less.
-// That sum over the levels, and the noise of the rest, is the squared error that is stated. It goes
-// to nothing with more samples, and with it what sharing blurs.
+// The detail is multiplied by a Wiener gain c of s / (s + q) or less. The expected squared error
+// after shrinkage, with Stein's term for choosing c from the same d (SURE; Stein 1981), is
+//   (1 - c)^2 s + c^2 q + 4 q D c'(D) / N,   at most D
+// 1/N: inverse degrees of freedom of s. The spread of the noise fields does not give N, because all
+// fields come from the same rounds. Means of (d^2 - n^2) / e with random signs measure the standard
+// error of s; its square is 2 / N of q^2 (more rounds give a better n and a larger N).
+//
+// If the ratios s / q of a level vary over the picture by no more than 2 / N, as on smooth
+// surfaces, all windows share one ratio (signals.h). Where c = 0 at single pixels, the positive
+// part of an uncertain s would exceed the remaining error by far: s is then limited to the range
+// from 0 to s of the next coarser level. An edge has half of the coarser signal, a smooth region a
+// quarter or less.
+//
+// The stated squared error is the sum over the levels and the noise of the rest. Noise and
+// blur both vanish as samples grow.
 #pragma once
 
 #include <algorithm>
@@ -46,17 +47,16 @@ namespace earthshine::raytrace {
 
 inline constexpr std::uint32_t seen_straight = 0xffffffffU;
 
-// What is seen in a mirror lies where the camera sees it, behind the mirror.
+// A point seen in a mirror lies at its virtual position behind the mirror.
 struct GatherPoint {
-  glm::vec3 position{0.0F};  // m, as of Sighting
-  float reach_m =
-      -1.0F;  // harmonic mean length of rays that end on surfaces; negative: none are cast
+  glm::vec3 position{0.0F};  // m, as Sighting::position
+  float reach_m = -1.0F;     // harmonic mean length of rays that hit surfaces; negative: no rays
   glm::vec3 normal{0.0F};    // unit, on the camera's side
-  float spacing_m = 0.0F;    // how far apart neighbouring pixels are there, across the view
-  float reflectance = 0.0F;  // luminance of the surface's k_d, times the mirror's
-  float lobe = 0.0F;         // and of its k_s, if its lobe is gathered for
-  std::uint32_t material = 0, triangle = 0;  // of the scene
-  std::uint32_t mirror = seen_straight;      // triangle of the mirror that it is seen in
+  float spacing_m = 0.0F;    // distance of neighbouring pixels there, across the view
+  float reflectance = 0.0F;  // luminance of k_d, times the mirror's reflectance
+  float lobe = 0.0F;         // luminance of k_s likewise; 0 if the lobe is not gathered
+  std::uint32_t material = 0, triangle = 0;  // indices in the scene
+  std::uint32_t mirror = seen_straight;      // triangle of the mirror that shows the point
 };
 
 inline constexpr std::size_t share_levels = 5;
@@ -64,11 +64,11 @@ inline constexpr std::size_t share_levels = 5;
 // Sums of samples at every point.
 struct Estimate {
   std::size_t layers = 0;        // per point
-  std::size_t image_layers = 0;  // the first of them, whose sum the eye sees
+  std::size_t image_layers = 0;  // the first layers, whose sum is visible
   std::vector<glm::vec3> sum;    // point * layers + layer
-  std::vector<glm::vec3> total;  // of the image layers; empty where there is one
-  std::vector<float> luminance;  // of the image layers together
-  std::vector<float> variance;   // of the luminance, as the halves of its rounds tell it
+  std::vector<glm::vec3> total;  // of the image layers; empty if there is one
+  std::vector<float> luminance;  // of the sum of the image layers
+  std::vector<float> variance;   // of the luminance sum, from half differences of the rounds
   std::vector<float> samples;
 
   Estimate() = default;
@@ -84,7 +84,7 @@ struct Estimate {
     if (!total.empty()) total[point] = glm::vec3(0.0F);
     luminance[point] = variance[point] = samples[point] = 0.0F;
   }
-  // Sums of some samples, by layer.
+  // Adds sums of some samples, by layer.
   void add(std::size_t point, std::span<const Rgb> of_layers) {
     for (std::size_t layer = 0; layer < layers; ++layer) {
       const glm::vec3 more(of_layers[layer]);
@@ -92,7 +92,7 @@ struct Estimate {
       if (!total.empty() && layer < image_layers) total[point] += more;
     }
   }
-  // The same of the total alone.
+  // An estimate with the total as its only layer.
   [[nodiscard]] Estimate of_total() const {
     Estimate one;
     one.layers = one.image_layers = 1;
@@ -102,7 +102,7 @@ struct Estimate {
     one.samples = samples;
     return one;
   }
-  // Of one round: what each half of the samples adds up to.
+  // Adds one round: the sums of both halves.
   void add_luminance(std::size_t point, float first, float second) {
     luminance[point] += first + second;
     variance[point] += (first - second) * (first - second);
@@ -114,7 +114,7 @@ struct Estimate {
   [[nodiscard]] float noise(std::size_t point) const {
     return samples[point] > 0.0F ? variance[point] / (samples[point] * samples[point]) : 0.0F;
   }
-  // A point's sums.
+  // Sums of one point.
   void pass(std::size_t point, base::Parcel& parcel) {
     parcel.pass_range(&sum[point * layers], layers);
     if (!total.empty()) parcel.pass(total[point]);
@@ -124,22 +124,21 @@ struct Estimate {
   }
 };
 
-// Which points share: those on the same surface, up to 2 steps of 1, 2, 4 ... pixels away in their
-// column, and up to 2 away in the rows of these.
+// Neighbourhoods for the wavelet transform: points on the same surface, up to 2 steps of 1, 2, 4
+// ... pixels away in the same column, and up to 2 steps away in the rows of these.
 class Neighbours {
  public:
   // The points lie row by row in the window.
   Neighbours(const Window& window, const std::vector<GatherPoint>& points);
-  // The same of those that have like material.
+  // The neighbours with the same material.
   [[nodiscard]] Neighbours of_like_material(const std::vector<GatherPoint>& points) const;
 
-  // Means over each point's neighbours that are `1 << level` pixels apart, with B-spline weights
-  // times `weight` (nullptr: 1), of some values a point: values[k] and means[k] hold the k-th of
-  // all points.
+  // Means over each point's neighbours at distances of `1 << level` pixels, with B-spline weights
+  // times `weight` (nullptr: 1). values[k] and means[k] hold the k-th value of all points.
   using Planes = std::vector<std::vector<float>>;
   [[nodiscard]] Planes planes(std::size_t number) const;  // all 0
   [[nodiscard]] std::size_t count() const { return masks_.front().size(); }
-  // Without neighbours at any distance.
+  // Whether the point has no neighbour at any distance.
   [[nodiscard]] bool is_alone(std::size_t point) const;
   void blur(std::size_t level, const Planes& values, const std::vector<float>* weight,
             Planes& means) const;
@@ -149,7 +148,7 @@ class Neighbours {
                   const std::vector<float>* weight, Planes& means) const;
   void blur_along(std::size_t level, std::size_t y, const Planes& values,
                   const std::vector<float>* weight, float* sums) const;
-  // Tells every point's neighbours apart: keep(p, q) of those of `mask`.
+  // Keeps a neighbour q of p in `mask` if keep(p, q).
   template <class Keep>
   void sift(std::size_t level, const Keep& keep);
 
@@ -159,53 +158,51 @@ class Neighbours {
 
 struct Shared {
   std::size_t layers = 0;
-  std::vector<glm::vec3> radiance;  // as Estimate::sum, the shared means
-  // By level and point, of its luminance: mean squares of signal (found by chance: it may be
-  // negative) and noise, and 1 / N.
+  std::vector<glm::vec3> radiance;  // denoised means, indexed as Estimate::sum
+  // By level and point, of the luminance: mean squares of signal (an estimate that may be negative)
+  // and noise, and 1 / N.
   std::array<std::vector<float>, share_levels> signal, noise, inverse_dof;
-  std::vector<float> rest;  // noise of it
-  // Of off-grid points, the signal that noise may hide: less cannot be told from none. Empty
-  // without off-grid points.
+  std::vector<float> rest;  // noise of the rest
+  // For off-grid points, the standard error of the signal, its least value. Empty without off-grid
+  // points.
   std::vector<float> hidden;
   std::vector<float> squared_error;  // stated
-  // Of points that stand alone, noise that is likely beyond it, or less than none (alone.h).
+  // For isolated points, the likely variance minus the stated one; may be negative (isolated.h).
   std::vector<float> variance_prior;
 
-  // What the squared error would be with `factor` times the samples here and around.
+  // Predicts the squared error with `factor` times the samples at the point and around it.
   [[nodiscard]] double squared_error_with(std::size_t point, double factor) const;
-  // The same of each of [begin, end).
+  // The same prediction for each of [begin, end).
   void squared_errors_with(double factor, std::size_t begin, std::size_t end, float* errors) const;
-  // For so many points; those there are keep theirs.
+  // Resizes for this number of points; existing points keep their values.
   void resize(std::size_t points);
 };
 
-// What is kept of details: as told above, or all of them: values stay as they are, and their noise
-// is that of a sample around, over the samples there (the halves of a point's own rounds may
+// Gain of details: as above, or 1. With All, values stay as they are, and the noise is the mean
+// noise of a sample in the window, over the point's samples (the halves of a point's own rounds may
 // agree by chance).
 enum class Keep { AsTold, All };
 
-// The points of the grid, which come first in the estimate.
+// Denoises the grid points, which come first in the estimate.
 [[nodiscard]] Shared share(const Neighbours& neighbours, const Estimate& estimate,
                            Keep keep = Keep::AsTold);
-// The same where the estimate's sums are: it is left without, and those of off-grid points stay in
-// Shared::radiance until add_off_grid_points() has them.
+// The same in the memory of estimate.sum, which becomes empty. Sums of off-grid points stay in
+// Shared::radiance until add_off_grid_points() reads them.
 [[nodiscard]] Shared share_in_place(const Neighbours& neighbours, Estimate& estimate,
                                     Keep keep = Keep::AsTold);
 
-// The share of a detail of signal s and noise q that is kept, mean squares; few: 1 / N. Noise that
-// is found by chance looks like signal half of the time: only what is well above it counts, the
-// more so the fewer details tell s, which is off by sqrt(2 / N) q by chance. Both shares of q are
-// what cost least on the payload bay (docs/log/renderer.md).
+// The gain of a detail with mean squares s of signal and q of noise; inverse_dof: 1 / N. Chance
+// makes s positive half of the time. Only an s well above its standard error, sqrt(2 / N) q,
+// counts. The margins are the cheapest on the payload bay (docs/log/renderer.md).
 [[nodiscard]] inline float wiener_gain(float s, float q, float inverse_dof) {
   const float sure =
       s - (tuning::noise_margin + tuning::chance_margin * std::sqrt(2.0F * inverse_dof)) * q;
   return sure > 0.0F ? sure / (sure + q) : 0.0F;
 }
 
-// Whether two points seen through nearby pixels lie on the same surface, flat or gently curved.
-
-// Normals within 25 degrees, and neither point further off the other's tangent plane than a circle
-// bends away over such an angle. slack_m: what rounding may do.
+// Whether two points seen through nearby pixels lie on the same flat or gently curved surface:
+// their normals are within 25 degrees, and neither point is further off the other's tangent plane
+// than a circle bends away over such an angle. slack_m: tolerance for rounding.
 [[nodiscard]] inline bool same_surface(const glm::vec3& from, const glm::vec3& normal,
                                        const glm::vec3& to, const glm::vec3& other_normal,
                                        float slack_m) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t points_at_once = 1024;
 
-// Of all windows of the picture.
+// Sums over all windows of the picture.
 struct Spread {
   double count = 0.0, s = 0.0, q = 0.0;
   double ratio = 0.0, squared = 0.0, chance = 0.0;  // s / q, its square, and its variance by chance
@@ -28,9 +28,9 @@ struct Spread {
     ratio += other.ratio, squared += other.squared, chance += other.chance;
     return *this;
   }
-  // Not the mean of the ratios: with q known by few details that is too large.
+  // The ratio of the means: the mean of the ratios is too large if few details give q.
   [[nodiscard]] float mean() const { return q > 0.0 ? static_cast<float>(s / q) : 0.0F; }
-  // Of what a signal is off the mean, as much as is chance.
+  // The fraction of the variance of s / q that is due to chance.
   [[nodiscard]] float chance_share() const {
     if (count < 2.0) return 0.0F;
     const double variance = squared / count - ratio / count * (ratio / count);
@@ -71,8 +71,7 @@ std::vector<std::uint8_t> draw_signs(const Neighbours& neighbours, const Estimat
   return signs;
 }
 
-// On the way noise is that of a detail with what is expected on the average of a window, and few
-// the variance of signal / noise there.
+// Until the last loop, noise is <n^2 / e> over <1 / e>, and inverse_dof the variance of s / q.
 void find_signals(std::size_t level, const Neighbours::Planes& squares,
                   const std::vector<float>& expected, Shared& shared) {
   const std::size_t points = expected.size();

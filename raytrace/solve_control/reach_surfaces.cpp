@@ -18,23 +18,24 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Of the wanted error: what samples are to leave, and cuts, of which samples see a part.
+// Fractions of the wanted error: target of sampling; target of dividing patches, of which samples
+// see only a part
 constexpr double aim = 0.85, cut_aim = 0.25;
-// The error supposed at first; the share of the stated one that a pass cuts for.
+// Assumed at first; fraction of the stated error that a pass aims at by dividing
 constexpr double first_error = 0.15, next_error = 0.2;
-constexpr double noise_share = 0.4;  // of the wanted squared error, left to the rays
+constexpr double noise_share = 0.4;  // share of the wanted squared error for ray noise
 constexpr std::uint64_t many_rays = std::uint64_t{1} << 28;
-constexpr double most_growth = 4.0;                        // of the rays of a pass
-constexpr double cut_share = 0.6;                          // to what is uneven within patches
+constexpr double most_growth = 4.0;                        // of the rays from pass to pass
+constexpr double cut_share = 0.6;                          // of squared error, for unevenness
 constexpr std::size_t largest_cut = std::size_t{1} << 21;  // patches
-constexpr int most_idle = 2;                               // a single pass may look worse by chance
-constexpr double next_pass = 1.2;                          // of the time that the one before took
-constexpr double more_points_share = 0.5;                  // of a time limit: no more points then
+constexpr int most_idle = 2;                               // passes; one may be bad by chance
+constexpr double next_pass = 1.2;                          // duration, over the previous pass
+constexpr double more_points_share = 0.5;                  // of a time limit: no more points
 constexpr double fewest_points = 8192.0, most_points = 1 << 20;
-constexpr double most_standard_error = 0.3;  // of the wanted squared error, as a standard error
+constexpr double most_standard_error = 0.3;  // of the squared error, over the wanted squared error
 
 constexpr int coarse_rays = 64;
-constexpr double coarse_error = 0.2;  // that the first cut is meant for
+constexpr double coarse_error = 0.2;  // target of the first patches
 
 double squared(double x) { return x * x; }
 
@@ -74,8 +75,8 @@ class SurfaceSearch {
   }
 
  private:
-  // Light that no ray finds again, as of a small spot beside a lamp that mirrors alone show, is
-  // missing from all samples alike: the mean is off by what it `lacks`, and the error is no less.
+  // Light that no ray finds, such as a small spot near a lamp that is only visible in mirrors, is
+  // missing from all samples alike. The ledger's defect `lacks` then is a lower bound of the error.
   void hold_to_ledger(double lacks) {
     const double stated = result_.surface.parts.total().estimate;
     if (result_.steps.empty() || lacks <= stated) return;
@@ -86,17 +87,17 @@ class SurfaceSearch {
     if (lacks > wanted_.error && result_.limit == Limit::None) stop(Limit::Ledger);
   }
 
-  // Of ranks that divide the form factors the first decides, and the others sample with it.
+  // If ranks divide the form factors, the root rank decides, and all ranks sample.
   [[nodiscard]] bool joins() const { return light_->shares().joins(); }
   [[nodiscard]] bool may_cut() const { return cuts_surfaces(given_); }
   [[nodiscard]] bool may_cast() const { return !given_.form_factor_rays; }
-  // What reflects was lit by shadow rays alone, and evenly.
+  // Whether shadow rays alone lit all reflecting surfaces, and evenly.
   [[nodiscard]] bool is_exact() const {
     return result_.steps.size() == 1 && result_.steps.back().estimate == 0.0 &&
            light_->patches().count() == first_patches_;
   }
-  // Light that lands where nothing reflects is still only as exact as the form factors: as many
-  // rays as the error wants of any scene.
+  // The light on black surfaces still has the accuracy of the form factors: repeats the solve with
+  // the number of rays for the wanted error.
   SteeredSolution with_exact_form_factors() {
     if (const Progress progress = stage("solve")) progress(0, 1);
     radiosity::SolveOptions solver = result_.solver;
@@ -132,7 +133,7 @@ class SurfaceSearch {
 
   void improve() {
     double before = 0.0;
-    int idle = 0;  // passes in a row that cut nothing and brought nothing
+    int idle = 0;  // passes in a row without division or progress
     SurfaceRefiner choice(light_->patches(), light_->light().spot_m2);
     std::vector<SampleBudget> budget = even_budget(*light_, points_wanted_);
     double pass_begun = time_gone();
@@ -183,8 +184,8 @@ class SurfaceSearch {
     }
   }
 
-  // Few points may miss all of an error that is left in a few places: more are looked at, while
-  // there is time and up to a million.
+  // Few points may miss an error in small places: uses more points, up to a million, as long as
+  // there is time.
   [[nodiscard]] bool is_sure(const ResidualError& found) const {
     return found.square + found.standard_error <=
                (1.0 + most_standard_error) * squared(wanted_.error) ||
@@ -192,14 +193,15 @@ class SurfaceSearch {
            !(may_cut() || may_cast());
   }
 
-  // What may be left of the mean square by the next pass: no more is cut at once than halves the
-  // error, since what is cut for shadows alone costs rays of all other light.
+  // Mean square at which the next pass stops dividing patches: at least the square of a fifth of
+  // the stated error, because patches that are divided for shadows cost rays of all other light,
+  // too.
   [[nodiscard]] double enough() const {
     const double now = result_.steps.empty() ? first_error : result_.steps.back().estimate;
     return squared(std::max(cut_aim * wanted_.error, next_error * now) * rounds_->mean());
   }
 
-  // At most four times as many rays as before, or as many as the time that is left pays for.
+  // At most four times the rays of the previous pass, or as many as the remaining time allows.
   [[nodiscard]] std::vector<SampleBudget> next_budget(const std::vector<double>& variance,
                                                       const std::vector<std::uint32_t>& parent,
                                                       double target) const {
@@ -221,13 +223,13 @@ class SurfaceSearch {
                              wanted_.error, found.parts.total().estimate});
   }
 
-  // One cut makes a few others needed: the last few patches may be out of reach.
+  // Divisions cause divisions of neighbours: the last few patches may be out of reach.
   [[nodiscard]] Limit why_no_more() const {
     return 64 * light_->patches().count() >= 63 * bound_.most ? bound_.of : Limit::Steps;
   }
 
   void stop(Limit limit) { result_.limit = limit; }
-  // The share of the time limit; 0 without one.
+  // Elapsed share of the time limit; 0 without a limit.
   [[nodiscard]] double time_gone() const {
     return wanted_.seconds > 0.0 && wanted_.now ? wanted_.now() / wanted_.seconds : 0.0;
   }
@@ -248,7 +250,7 @@ class SurfaceSearch {
   const StageListener& progress_;
   SteeredSolution result_;
   std::optional<LightOnSurfaces> light_;
-  std::optional<SurfaceRounds> rounds_;  // of the light, and with it
+  std::optional<SurfaceRounds> rounds_;  // exists if light_ does
   double solver_error_ = 0.0;
   std::vector<PassError> passes_;
   double points_wanted_ = fewest_points, last_rays_ = 0.0, last_took_ = 0.0;
@@ -277,8 +279,8 @@ radiosity::SolveOptions first_surface_options(const scenes::Scene& scene, double
 
 PatchBound patch_bound(const Wanted& wanted, const scenes::Quality& given, std::size_t first,
                        std::size_t largest) {
-  constexpr int rays = 16;          // a patch, which coarse ones share
-  constexpr std::size_t near = 64;  // of which one more or less does not count
+  constexpr int rays = 16;          // per patch, as coarse patches share theirs
+  constexpr std::size_t near = 64;  // finds the bound to 1/64
   PatchBound bound{std::max(first, largest)};
   if (given.max_patches) {
     const std::size_t allowed = std::max(first, static_cast<std::size_t>(*given.max_patches));

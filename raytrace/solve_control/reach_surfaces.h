@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A solution whose radiosity is as exact over the surfaces as wanted, by its residual.
+// Solves the radiosity to a wanted error over the surfaces, estimated from its residual.
 #pragma once
 
 #include "raytrace/frame/options.h"
@@ -7,18 +7,18 @@
 
 namespace earthshine::raytrace {
 
-// Whether the scene leaves the cut to it.
+// Whether the scene leaves the division into patches to this solver.
 [[nodiscard]] bool cuts_surfaces(const scenes::Quality& given);
 
-// What it begins with: a coarse cut with few rays, unless the scene names the cut or the rays.
+// Options of the first solve: coarse patches with few rays, unless the scene sets them.
 [[nodiscard]] radiosity::SolveOptions first_surface_options(const scenes::Scene& scene,
                                                             double error, std::uint64_t seed);
 
-// Solves once, on a coarse cut with few rays. Then, until the stated error is within the wanted
-// one or a limit comes: samples the residual on all patches, states the error, puts it right
-// (surface_light.h), halves the patches that hold most of what is uneven within them, and casts
-// rays where noise is most of it. What the scene's quality names stays as it is. `progress` is
-// told what is under way; it may be empty.
+// Solves once, with coarse patches and few rays. Then repeats passes until the stated error reaches
+// the wanted one, or a limit ends them: sample the residual on all patches, state the error,
+// correct the light (surface_light.h), divide the patches with most of the unevenness, and
+// distribute rays where noise is largest. Values in the scene's quality stay fixed. `progress` gets
+// the name of each stage; it may be empty.
 [[nodiscard]] SteeredSolution reach_surfaces(const scenes::World& scene, const Wanted& wanted,
                                              std::uint64_t seed, const SolveListener& listen,
                                              const StageListener& progress = {});

@@ -13,17 +13,19 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr int most_rounds = 24;
-// What is left must fall to this share within so many rounds: else it is noise that is cut.
+// The remaining unevenness must fall to this share within gain_rounds; otherwise it is noise.
 constexpr double least_gain = 0.8;
 constexpr int gain_rounds = 4;
-constexpr double fewest_fresh = 1e-3;  // new patches of a round, of all, that are worth another
-// A round cuts the patches that hold this share of what is uneven: where shadow rays tell it
-// exactly, and where rays do, by which the largest are the largest by chance too.
+constexpr double fewest_fresh = 1e-3;  // new patches of a round, over all patches, that justify
+                                       // another round
+// A round divides the patches with this share of the unevenness. Shadow rays measure it accurately;
+// with cosine rays, the largest values are partly due to chance.
 constexpr double shadow_cuts = 0.5, gather_cuts = 0.8;
 constexpr double shadow_share = 0.4, gather_share = 0.7;  // of a time limit
-// Patches, of those there are: what rays have said of few points is said anew before more are cut.
+// Growth of the number of patches per call: estimates from few points need new samples before
+// further divisions.
 constexpr double most_gather_growth = 1.5, most_shadow_growth = 2.0;
-// Few patches cost little to look at again.
+// With few patches, sampling them again is cheap.
 constexpr double few_patches = 1 << 16, few_growth = 8.0;
 constexpr std::size_t first_shadow_cut = 3 << 15;
 // Over all surfaces.
@@ -49,7 +51,7 @@ double SurfaceRounds::time_gone() const {
 SurfaceSamples SurfaceRounds::sample(std::span<const std::uint32_t> which,
                                      std::span<const SampleBudget> budget, const std::string& name,
                                      SamplesOf of) {
-  // What is broken off here has changed nothing yet.
+  // If a stop interrupts this, nothing has changed yet.
   const base::StopInForce stop(wanted_.stop);
   SurfaceSamples samples =
       sampler_.sample(light_.light(), which, budget, ++pass_, mean_, light_.bodies(),
@@ -155,7 +157,7 @@ void SurfaceRounds::find_light() {
 bool SurfaceRounds::cut_shadows(double enough, std::vector<std::uint32_t>& parent,
                                 SurfaceRefiner* also) {
   if (shadow_points_ <= 0.0 || time_gone() > shadow_share) return false;
-  std::vector<std::uint32_t> large;  // spots are not cut
+  std::vector<std::uint32_t> large;  // spots are not divided
   for (std::uint32_t i = 0; i < light_.patches().count(); ++i) {
     if (!light_.is_spot(i)) large.push_back(i);
   }

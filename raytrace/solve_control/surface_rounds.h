@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rounds of a solve to an error: cuts the patches where light is uneven within them and samples the
-// new ones.
+// Rounds within a pass of a solve to a wanted error: divide patches with uneven light and sample
+// the new ones.
 #pragma once
 
 #include <functional>
@@ -14,11 +14,11 @@ namespace earthshine::raytrace {
 
 class SurfaceRounds {
  public:
-  // All must outlive it. most: patches.
+  // The arguments must outlive it. most: number of patches.
   SurfaceRounds(const scenes::World& scene, const Wanted& wanted, std::uint64_t seed,
                 LightOnSurfaces& light, std::size_t most, const StageListener& progress);
 
-  // Of the radiosity, that error_weight() goes by.
+  // Mean of the radiosity, for error_weight().
   void set_mean(double mean) { mean_ = mean; }
   [[nodiscard]] double mean() const { return mean_; }
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
@@ -26,25 +26,26 @@ class SurfaceRounds {
     return sampler_.reflectances();
   }
 
-  // By shadow rays all over, where the first solve has found none: a spot of sunlight that its few
-  // points missed. Sets the mean.
+  // Samples all patches by shadow rays if the first solve is black: its few points may have missed
+  // a spot of sunlight. Sets the mean.
   void find_light();
-  // A set of samples of its own. name: of the stage.
+  // An independent set of samples. name: of the stage.
   [[nodiscard]] SurfaceSamples sample(std::span<const std::uint32_t> which,
                                       std::span<const SampleBudget> budget, const std::string& name,
                                       SamplesOf of);
-  // By shadow rays and cosine rays, until `enough` of the mean square is left, as far as the pieces
-  // tell. points: over all surfaces. parent: of each patch, kept up. Whether anything was cut.
+  // Divides patches by shadow rays and cosine rays, until the samples of the new patches indicate
+  // that `enough` of the mean square remains. points: over all surfaces. parent: updated for each
+  // patch. Returns whether a patch was divided.
   bool cut_gathered(SurfaceRefiner& choice, double enough, double points,
                     std::vector<std::uint32_t>& parent);
-  // By shadow rays alone: the edges of shadows and the surroundings of lamps, by twice as many
-  // points the next time; nothing once there was nothing left to cut. also: follows the cuts.
+  // Divides patches by shadow rays only: at edges of shadows and near lamps, with twice as many
+  // points in the next call; none after a call without divisions. also: a refiner to update.
   bool cut_shadows(double enough, std::vector<std::uint32_t>& parent,
                    SurfaceRefiner* also = nullptr);
 
  private:
-  // SurfaceRefiner::worst()'s arguments, the share of the time limit after which nothing is cut, how the
-  // pieces are sampled, and as which stage.
+  // Arguments of SurfaceRefiner::worst(), the share of the time limit after which no patch is
+  // divided, the sample budgets of new patches, and the name of the stage.
   struct How {
     double enough, share;
     std::size_t limit;
@@ -53,14 +54,14 @@ class SurfaceRounds {
     std::string name;
   };
 
-  // Of ranks that divide the form factors the first decides, and the others sample with it.
+  // If ranks divide the form factors, the root rank decides, and all ranks sample.
   [[nodiscard]] bool joins() const { return light_.shares().joins(); }
-  // The share of the time limit; 0 without one.
+  // Elapsed share of the time limit; 0 without a limit.
   [[nodiscard]] double time_gone() const;
   [[nodiscard]] std::vector<radiosity::Cut> worst(const SurfaceRefiner& choice, const How& how);
-  // What is sampled on some patches, seen and put into the light.
+  // Samples some patches and adds the samples to `choice` and to the light.
   void update(SurfaceRefiner& choice, std::span<const std::uint32_t> which, const How& how);
-  // By shadow rays alone, until `enough` is left.
+  // Arguments for shadow rays only, until `enough` remains.
   [[nodiscard]] How for_shadows(double enough) const;
   bool cut(SurfaceRefiner& choice, const How& how, std::vector<std::uint32_t>& parent,
            SurfaceRefiner* also);

@@ -7,23 +7,24 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Pictures add the residual, so that the solution decides about their price alone. Measured on the
-// payload bay and on models in the Sun (docs/accuracy.md): 16 rays a patch cost least at errors of 5
-// to 0.5 %, patches of 1/48 of the scene's diagonal at 5 %, a third smaller for smaller errors.
+// Pictures add the residual, so that the solution affects only their cost. Measured on the payload
+// bay and on models in sunlight (docs/accuracy.md): 16 rays per patch cost least at errors of 5 to
+// 0.5 %, and patches of 1/48 of the scene's diagonal at 5 %, smaller by a third for smaller errors.
 constexpr double measured_error = 0.05;
 constexpr int rays_a_patch = 16;
-// On an orbiter in the Sun the sweeps that balance energy to 1e-3 take a third of the picture's time
-// at an error of 5 % and half at 2 %, and the number of samples is the same without them.
+// On an orbiter in sunlight, balancing energy to 1e-3 takes a third of the picture's time at an
+// error of 5 % and half at 2 %, while the number of samples is the same without it.
 constexpr double balance = 0.1;
-// Of each lamp, and points of a patch for direct light: where the solution is off, pictures find it
-// (four points for sixteen: the same squared error times CPU time, 0.95 to 1.03, and a third of the
-// solve less by night).
+// Rays per lamp, and points per patch for direct light: pictures correct their errors. Compared
+// with sixteen points, four points have 0.95 to 1.03 of the squared error times CPU time, and the
+// solve takes a third less time by night.
 constexpr int flux_rays = 1 << 12, direct_points = 4;
-constexpr double told_by = 8.0;           // rays so far over those of the passes that count
+constexpr double told_by = 8.0;           // passes with at least 1/8 of the rays so far count
 constexpr double most_times_more = 16.0;  // the rays so far
 constexpr double least_power = 0.05;      // of the rays: an error may seem to rise by chance
-constexpr double least_told = 1e-3;       // of the wanted error
-constexpr double smallest_edge = 2.0 / 3.0, largest_edge = 2.0;  // over that of the measured error
+constexpr double least_told = 1e-3;       // least error in the fit, over the wanted error
+constexpr double smallest_edge = 2.0 / 3.0, largest_edge = 2.0;  // over the edge for the measured
+                                                                 // error
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is asked for where a result is to be as exact as wanted, and what came of it.
+// The wanted error of a result, its limits, and the outcome.
 #pragma once
 
 #include <functional>
@@ -14,36 +14,36 @@
 namespace earthshine::raytrace {
 
 struct Wanted {
-  double error = 0.02;               // relative, of what the budget estimates
-  double seconds = 0.0;              // since `now` was 0; 0: no limit
-  std::function<double()> now = {};  // seconds so far
-  std::function<bool(double patches, int rays)> fits = {};  // into memory; empty: anything does
-  // Whether to end with what there is, asked from many threads; empty: never. Not with ranks.
+  double error = 0.02;                                      // relative
+  double seconds = 0.0;                                     // time limit from now() = 0; 0: none
+  std::function<double()> now = {};                         // elapsed seconds
+  std::function<bool(double patches, int rays)> fits = {};  // into memory; empty: always
+  // Whether to end with the current result; called by many threads. Empty: never. Not with ranks.
   std::function<bool()> stop = {};
 };
 
-// What stopped it before the wanted error.
-// Given: a solution that was read is taken as it is.
+// The cause of an end before the wanted error. Given: a solution from a file is used unchanged.
 enum class Limit { None, Time, Memory, Settings, Steps, Stopped, Ledger, Given };
 [[nodiscard]] std::string limit_name(Limit limit);
 
-// One try: what was chosen and what came of it.
+// Settings and outcome of one step.
 struct Step {
   std::string stage;  // "solve", "picture"
   std::size_t patches = 0;
   int form_factor_rays = 0;
   int gather_rays = 0;
-  double asked = 0.0;     // relative error that the settings were meant for
-  double estimate = 0.0;  // found; 0: not looked at
+  double asked = 0.0;     // target of the settings, relative
+  double estimate = 0.0;  // stated error; 0: not estimated
 };
 
 struct PatchBound {
   std::size_t most = 0;
-  Limit of = Limit::Steps;  // what sets it: the scene's settings, memory, or nothing of these
+  Limit of = Limit::Steps;  // the cause of the bound: the scene's settings, memory, or neither
 };
 
-// How many patches a solve to an error may cut: no fewer than the `first` that there are, no more than `largest`, than the scene allows and, to a
-// 64th, than all ranks have memory for. Asks for the memory that is free now.
+// Most patches of a solve to a wanted error: at least the current number `first`, at most
+// `largest`, the scene's limit, and the number for which all ranks have memory (within 1/64).
+// Queries the free memory of this moment.
 [[nodiscard]] PatchBound patch_bound(const Wanted& wanted, const scenes::Quality& given,
                                      std::size_t first, std::size_t largest);
 
@@ -55,24 +55,21 @@ struct SteeredSolution {
   Limit limit = Limit::None;
 };
 
-// Whether a solve is to go on: what passes stated, after so many rays in all.
+// Number of rays in all and stated error after a pass.
 struct PassError {
   double rays = 0.0, error = 0.0;
 };
-// Whether what is left of the error takes more than 16 times the rays of all that has been done, as
-// the line has it that fits the logarithms of both best since an eighth of them were cast: a single
-// pass states too much or too little by chance. Passes none of which is after half of the rays or
-// fewer say nothing.
+// Whether the wanted error would take more than 16 times the rays so far, by a line through the
+// logarithms of rays and errors. The fit uses all passes since an eighth of the rays, because a
+// single stated error is uncertain. False if no pass ended at half of the rays or fewer.
 [[nodiscard]] bool is_far_off(const std::vector<PassError>& passes, double wanted);
 
-// Called before each solve; gives the listener for what the solve takes, which may be empty.
+// Called before each solve; returns the listener for its duration, which may be empty.
 using SolveListener = std::function<void(const radiosity::SolveReport&)>;
 
-// The solve for pictures of a wanted error. Pictures measure what a solution lacks and add it, so
-// that the solution decides about their price alone: it need not be exact, only near.
-
-// Even patches and rays that cost about as much as they save the picture; what `quality` names
-// itself stays as it is.
+// Options of a solve for pictures of a wanted error. Pictures measure and add the residual of the
+// solution, which therefore affects only their cost: patches and rays that cost about as much as
+// they save. Values in `quality` stay fixed.
 [[nodiscard]] radiosity::SolveOptions picture_solver(const scenes::Scene& scene,
                                                      const scenes::Quality& quality,
                                                      std::uint64_t seed);

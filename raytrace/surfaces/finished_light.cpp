@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The solution that a LightOnSurfaces ends as.
+// Turns LightOnSurfaces into a solution.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,13 +14,13 @@ constexpr double unexplained = 6.0;  // standard errors
 
 }  // namespace
 
-// B = M + rho (E0 + k I), per column the one k with which all light ends somewhere:
-//   sum A ((a - rho) k I + B (escape + lost)) = sum A (M + rho E0)
-// What samples leave of that sum is their noise and no light. Where rows were not balanced there is
-// no such k to be known.
-// Gives what k adds to the mean radiosity, by luminance, as a share of it.
+// Scales the indirect light so that energy is conserved: B = M + rho (E0 + k I), with one k per
+// column that solves
+//   sum A ((a - rho) k I + B (escape + lost)) = sum A (M + rho E0).
+// A defect of the samples in this sum is noise. Without balanced rows, k is unknown and not
+// applied. Returns the change of the mean radiosity by k, relative, in luminance.
 double LightOnSurfaces::close_energy(radiosity::PatchLight& found) const {
-  constexpr double most = 0.2;  // off 1
+  constexpr double most = 0.2;  // difference of k from 1
   const std::size_t columns = light_.columns();
   std::vector<double> lit(columns, 0.0), ended(columns, 0.0);
   const auto reflected = [&](std::size_t at) {
@@ -56,11 +56,11 @@ double LightOnSurfaces::close_energy(radiosity::PatchLight& found) const {
   return balanced && mean > 0.0 ? std::abs(base::luminance(added)) / mean : 0.0;
 }
 
-// The direct light of each group of lamps and sampled emitters against their flux. Where no ray of
-// the sources escaped or met a black back, all of it lands, in each channel. Else the samples, which
-// are many more than the sources' rays, say how much, but for more than is given; what they leave
-// is what escapes. A difference that the rays' noise does not explain remains in the ledger.
-// Gives the flux, by luminance, that samples made or lost, as a share of all flux.
+// Scales the direct light of each group of lamps and sampled emitters to their flux. If no ray of
+// the sources escaped or met a black back, all light lands, in each channel. Otherwise the samples,
+// far more than the sources' rays, give the landed flux, limited to the emitted flux; the rest
+// escapes. A difference beyond the noise of the rays remains in the ledger. Returns the flux that
+// the samples added or lost, relative to all flux, in luminance.
 double LightOnSurfaces::close_flux(radiosity::PatchLight& found,
                                    std::vector<radiosity::SourceFlux>& sources) const {
   const std::size_t columns = light_.columns(), groups = columns / 3;
@@ -146,8 +146,8 @@ double LightOnSurfaces::fill(radiosity::Solution& solution) const {
   }
   const double lacks = std::hypot(made, close_energy(found));
   found.sky = light_.sky;
-  radiosity::FormFactors ends;  // where light ends, of each patch as of its coarse one
-  ends.sky.assign(count, 0.0);  // as many rows, whose entries are not read
+  radiosity::FormFactors ends;  // where light ends; patches have the values of their coarse patch
+  ends.sky.assign(count, 0.0);  // sets the number of rows; entries are not read
   for (const std::uint32_t j : coarse_) {
     ends.kept.push_back(factors_.kept[j]);
     if (!factors_.kept_direct.empty()) ends.kept_direct.push_back(factors_.kept_direct[j]);

@@ -13,7 +13,7 @@ namespace {
 
 using scenes::RayPacket;
 
-constexpr std::size_t cosine_rays_each = 8;  // of those that are aimed at bright patches
+constexpr std::size_t cosine_rays_each = 8;  // cosine rays per aimed ray
 
 }  // namespace
 
@@ -92,8 +92,8 @@ void PatchSampler::gather(const SurfaceSpot& from, const base::SobolOwen4& seque
   }
 }
 
-// Of what such a ray meets only what the patch itself sends counts, straight or through glass that
-// does not bend it.
+// An aimed ray adds only the light of its target patch, seen directly or through glass that does
+// not bend the ray.
 void PatchSampler::aim(const SurfaceSpot& from, const std::array<float, 4>& u, const MisContext& all,
                        std::size_t entry) {
   const IncomingLight::Aimed aimed =
@@ -116,7 +116,7 @@ void PatchSampler::aim(const SurfaceSpot& from, const std::array<float, 4>& u, c
   scenes::follow_specular(scene_.scene, scene_.query, first, aimed.direction, true, visit);
 }
 
-// Reads the surface, and those that mirrors and glass lead on to, as the form factors have it
+// Reads the surface, and those behind mirrors and glass, as the form factors do
 // (radiosity/factors/row_caster.cpp).
 void PatchSampler::follow(const scenes::Hit& first, const Vec3& along, const MisContext& share,
                           std::size_t entry) {
@@ -131,7 +131,8 @@ void PatchSampler::follow(const scenes::Hit& first, const Vec3& along, const Mis
     const std::uint32_t m = scene_.scene.triangles[hit.triangle].material;
     const bool front = hit.front || scene_.scene.materials[m].two_sided;
     if (front) {
-      const bool aimed_come = scenes::goes_straight_on(along, way);  // to what is met, too
+      const bool aimed_come = scenes::goes_straight_on(along, way);  // aimed rays find this hit,
+                                                                     // too
       const double kept = aimed_come ? incoming_.residual_weight(hit, way, share) : 1.0;
       table_.add(hit, Rgb(base::pi * weight * kept), gathered(entry));
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rays of one patch of surface_samples.h.
+// Casts the rays of one patch for surface_samples.h.
 #pragma once
 
 #include <array>
@@ -13,16 +13,17 @@
 
 namespace earthshine::raytrace {
 
-// Where rays start: `lift` above the surface.
+// Start of rays: `lift` is the offset from the surface.
 struct SurfaceSpot {
   Vec3 at, normal, lift;
 };
 
-// Rays of one patch, and what they bring to its points: per point, half and group.
+// The rays of one patch and the light that they bring to its points: sums per point, half and
+// group. An entry is 2 * point + half.
 class PatchSampler {
  public:
-  // All must outlive it. kept: per material, 1 - mirror - transmit; table: what rays read, some of
-  // which are aimed at the bright patches.
+  // The arguments must outlive the sampler. kept: per material, 1 - mirror - transmit; table:
+  // radiance that rays read; bright: patches that some rays are aimed at.
   PatchSampler(const scenes::World& scene, const std::vector<double>& kept,
                const RadianceTable& table, const BrightPatches& bright, std::size_t groups,
                std::size_t sky_parts)
@@ -38,29 +39,29 @@ class PatchSampler {
   std::span<Rgb> lamps(std::size_t entry) { return {&lamps_[entry * groups_], groups_}; }
   std::span<Rgb> gathered(std::size_t entry) { return {&gathered_[entry * groups_], groups_}; }
   std::span<Rgb> sky(std::size_t entry) { return {&sky_[entry * sky_parts_], sky_parts_}; }
-  // Of all sampler, in sampler.
+  // Sums over all rays of the patch, in units of one entry.
   [[nodiscard]] double escaped() const { return escaped_; }
   [[nodiscard]] double lost() const { return lost_; }
   [[nodiscard]] std::uint64_t rays() const { return rays_ + shadows_.rays(); }
 
-  // Shadow rays to the source, straight and by mirrors, by so many points of a sequence from the
-  // first on. twice: the next look's are the same.
+  // Shadow rays to the source, direct and by mirrors, for `rays` points of a sequence from `first`
+  // on. twice: the samples count for the next entry, too.
   void sample_source(const radiosity::Source& source, const SurfaceSpot& from,
                      const base::SobolOwen4& sequence, std::size_t first, std::size_t rays,
                      std::size_t entry, bool twice);
   void finish_shadows();
 
-  // So many cosine rays by points of a sequence from the `point`-th time as many on, a multiple of
-  // the packet's width, and fewer aimed at bright patches by another sequence. Both ways of finding
-  // these are combined as IncomingLight does.
+  // Cosine-distributed rays, a multiple of the packet's width, by points point * rays and following
+  // of a sequence, and fewer rays aimed at bright patches by another sequence. Combined by MIS as
+  // in IncomingLight.
   void gather(const SurfaceSpot& from, const base::SobolOwen4& sequence,
               const base::SobolOwen4& aims, std::size_t point, std::size_t rays, std::size_t entry);
 
  private:
   struct Arriving {
     Rgb lx;
-    std::size_t to;  // of the sums by look and group
-    bool twice;      // and to the next look
+    std::size_t to;  // index of the sum of an entry and a group
+    bool twice;      // also adds to the next entry
   };
   void take(const Arriving& light, const Rgb& share);
   void add_shadow_ray(const SurfaceSpot& from, const scenes::LightSample& sample, const Rgb& lx,
@@ -80,7 +81,7 @@ class PatchSampler {
   std::vector<Rgb> lamps_, gathered_, sky_;
   std::vector<scenes::LightSample> taken_;
   double escaped_ = 0.0, lost_ = 0.0;
-  std::uint64_t rays_ = 0;  // but shadow rays
+  std::uint64_t rays_ = 0;  // without shadow rays
 };
 
 }  // namespace earthshine::raytrace

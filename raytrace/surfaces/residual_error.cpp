@@ -10,10 +10,10 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Few patches hold much of the error: its mean is nearer to a lognormal than to a normal quantity.
+// A few patches hold much of the error: its mean is closer to lognormal than to normal.
 constexpr double sure = 1.5 * 1.645;
-constexpr std::size_t residual_columns = 6;  // three for either half of the samples
-constexpr double darkest = 0.02;             // of the mean that a solution has, that it should have
+constexpr std::size_t residual_columns = 6;  // three for each half of the samples
+constexpr double darkest = 0.02;             // least true mean, relative to the solution's mean
 
 double squared(double x) { return x * x; }
 
@@ -25,7 +25,7 @@ ErrorEstimate estimate_of(double square, double more) {
   return {std::sqrt(std::max(0.0, square)), std::sqrt(std::max(0.0, square) + std::max(0.0, more))};
 }
 
-// Standard error of the product of two values of the same mean.
+// Standard error of the product of two estimates of the same mean.
 double product_error(double a, double b) {
   return 0.5 * std::abs(a - b) * (std::abs(a - b) + std::abs(a + b));
 }
@@ -50,7 +50,7 @@ ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& s
     const PatchResidual& r = samples.residual[i];
     if (r.taken == 0) continue;
     const std::array<Rgb, 2> half = {Rgb(r.half[0]), Rgb(r.half[1])};
-    const double part = patches.area_m2[i] * double(r.open);  // what no body covers
+    const double part = patches.area_m2[i] * double(r.open);  // open area
     area += part;
     const Rgb rho = reflectances.of(patches, i);
     const double weight = double(r.weight);
@@ -60,7 +60,7 @@ ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& s
     const double ra = weight * base::luminance(half[0]), rb = weight * base::luminance(half[1]);
     const double plain = 1.0 / std::max(1e-3, weight);
     unweighted += part * (double(r.unweighted) + plain * plain * (ra * gb + rb * ga + ga * gb));
-    // Where the patch is a spot, the mean counts alone.
+    // For spots only the mean counts.
     const bool is_spot = light.is_spot(i);
     const double ma = double(r.mean[0]), mb = double(r.mean[1]);
     square += part * ((is_spot ? ma * mb : double(r.square)) + ra * gb + rb * ga + ga * gb);
@@ -77,8 +77,8 @@ ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& s
   error.square = std::max(0.0, square / unit);
   error.standard_error = std::sqrt(variance) / unit;
   error.unweighted = std::sqrt(std::max(0.0, unweighted / unit));
-  // Noise is no more than what patches are off by as a whole: points that lie in strata have less
-  // of it than is expected of them.
+  // Noise is at most the squared error of the patches' means: stratified points have less noise
+  // than independent ones, for which it is computed.
   const double by_noise = std::clamp(whole / unit, 0.0, error.square);
   const double by_rays = std::min(by_noise, rays / unit);
   const double by_lamps = std::min(by_noise - by_rays, lamps / unit);
@@ -189,7 +189,7 @@ LightNoise noise_of(const LightOnSurfaces& light, const std::vector<double>& ray
   for (std::uint32_t i = 0; i < ray_variance.size(); ++i) {
     const PatchResidual& r = samples.residual[i];
     noise.rays.push_back(ray_variance[i] / std::max(1.0, light.gather_rays(i)));
-    // A piece still has the lamps' light of its patch: by how much that is off is what is known.
+    // A new part of a divided patch has the lamps' light of its parent: its measured error counts.
     noise.lamps.push_back(light.lamp_rays(i) > 0.0
                               ? double(r.lamps_mean_variance) * r.taken *
                                     light.light().shadow_rays[i] / light.lamp_rays(i)

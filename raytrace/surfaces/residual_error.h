@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The error of a solution over all surfaces, from samples of its residual and the matrix at hand:
-//   L - L~ = e = r + rho F e + ...        the second part from (1 - rho F) e = r, by patches
-// so that at a point of patch p  e = r + g_p,  and the mean square over the patch is
-//   <r^2> + 2 <r> g_p + g_p^2,
-// each square as a product of two halves of the samples that share no chance.
+// The error of a solution over all surfaces, from samples of its residual and the existing matrix:
+//   e = L - L~ = r + rho F e
+// The matrix gives the second term, g = rho F (1 - rho F)^-1 r, per coarse patch. At a point of a
+// patch, e = r + g, and the mean square over the patch is
+//   <r^2> + 2 <r> g + g^2,
+// each square as a product of two independent halves of the samples.
 #pragma once
 
 #include "raytrace/surfaces/surface_error.h"
@@ -15,45 +16,46 @@ namespace earthshine::raytrace {
 
 struct ResidualError {
   SolutionError parts;
-  double mean = 0.0;            // of the radiosity as it should be, luminance, lm/m^2
-  double square = 0.0;          // all relative to the mean's square: of the error
-  double patches = 0.0;         // of it, what is no noise: patches too large
-  double standard_error = 0.0;  // standard error of `square`
-  double unweighted = 0.0;      // root mean square at points, each counted in full
+  double mean = 0.0;            // true mean of the radiosity, luminance, lm/m^2
+  double square = 0.0;          // squared error; this and the following relative to the mean, or
+                                // its square
+  double patches = 0.0;         // part of `square` due to patches that are too large
+  double standard_error = 0.0;  // of `square`
+  double unweighted = 0.0;      // root mean square at points, without error_weight()
 };
 
-// Of the light itself, expected of the samples it was made from: mean squares over a patch, lm/m^2.
+// Expected noise of the light's samples: mean squares over a patch, lm/m^2.
 struct LightNoise {
   std::vector<double> rays, lamps;  // per patch
   [[nodiscard]] std::vector<double> all() const;
 };
 
-// Points and rays of a patch for so many cosine rays, at least 128: eight points with ever more rays
-// first. Of two points those of the largest product are the largest by chance.
+// Points and rays of a patch for this number of cosine rays, at least 128: eight points with up to
+// 64 rays per half, then more points. With two points, the largest products would be due to chance.
 [[nodiscard]] SampleBudget budget_of(double rays);
-// So many points over all patches by area, eight on each at least.
+// `points` over all patches by area, and two more on each; at least eight each.
 [[nodiscard]] std::vector<SampleBudget> even_budget(const LightOnSurfaces& light, double points);
-// The same of some patches, and `points` more by the share of all that is uneven.
+// The same for some patches, and `points` more in proportion to their shares of the unevenness.
 [[nodiscard]] std::vector<SampleBudget> budget_where_uneven(const radiosity::Patches& patches,
                                                             std::span<const std::uint32_t> which,
                                                             const SurfaceRefiner& choice,
                                                             double points);
 
-// Shadow rays alone: eight points on each of these patches, and `points` more over all surfaces.
+// Shadow rays only: eight points on each of these patches, and `points` more over all surfaces.
 [[nodiscard]] std::vector<SampleBudget> shadow_budget(const radiosity::Patches& patches,
                                                       std::span<const std::uint32_t> which,
                                                       double points);
 
-// Rays in proportion to the root of area times variance, so that the noise that is left in all is
-// `target`; `most` of them, and at least so many points that the error can be stated. variance: of
-// the patches before a cut, of which `parent` tells.
+// Rays in proportion to sqrt(area * variance), so that the total remaining noise is `target`; at
+// most `most` new rays, and at least `points` points, for the stated error. variance: of the
+// patches before a cut; parent: patch before the cut of each patch.
 [[nodiscard]] std::vector<SampleBudget> budget_for(const LightOnSurfaces& light,
                                                    const std::vector<double>& variance,
                                                    const std::vector<std::uint32_t>& parent,
                                                    double target, double most, double points);
 
-// The variance of r as one ray finds it, per patch: half its own guess, half the mean of all that
-// `which` names, of which budget is; 0 of others.
+// Variance of r for a single ray, per patch: half its own estimate, half the mean over `which`,
+// which `budget` belongs to; 0 for others.
 [[nodiscard]] std::vector<double> ray_variance(const radiosity::Patches& patches,
                                                const SurfaceSamples& samples,
                                                std::span<const std::uint32_t> which,
@@ -62,8 +64,8 @@ struct LightNoise {
                                   const std::vector<double>& ray_variance,
                                   const SurfaceSamples& samples);
 
-// samples: of all patches, and noise, both the first rank's; of ranks that divide the factors of
-// the light each must ask, and gets it.
+// samples (of all patches) and noise are read on the root rank only. All ranks that divide the form
+// factors must call this, and all get the result.
 [[nodiscard]] ResidualError residual_error(const LightOnSurfaces& light,
                                            const SurfaceSamples& samples, const LightNoise& noise,
                                            const radiosity::PatchAlbedos& reflectances,

@@ -10,12 +10,13 @@
 namespace earthshine::raytrace {
 namespace {
 
-constexpr double far_apart = 0.1;     // of the mean, that halves of shadow rays are
-constexpr double most_weighed = 2.0;  // over what is bright or in the solution, weighed
+constexpr double far_apart = 0.1;     // difference of the halves of shadow rays, over the mean
+constexpr double most_weighed = 2.0;  // limit on weighted gathered light, over the larger of bright
+                                      // light and the solution
 
 double squared(double x) { return x * x; }
 
-// Of n values the square of their mean without what chance adds, and the variance of the mean.
+// Of n values: the squared mean without bias by noise, and the variance of the mean.
 struct MeanSquare {
   double sum = 0.0, squares = 0.0, count = 0.0;
   void add(double value) {
@@ -66,8 +67,8 @@ void ResidualSums::finish(double mean, PatchResidual& residual) {
     const double weight = error_weight(p.radiosity + std::max(0.0, off), mean);
     weights += weight;
     unweighted += p.all[0] * p.all[1];
-    // What gather rays find is held to that: where it is true, it cannot be more; one chance hit
-    // can.
+    // Limits outliers of gather rays: the true weighted value cannot exceed `most`, a single chance
+    // hit can.
     const double most = mean > 0.0 ? most_weighed * std::max(p.radiosity, error_bright * mean)
                                    : std::numeric_limits<double>::infinity();
     for (std::size_t half = 0; half < 2; ++half) {
@@ -101,7 +102,7 @@ void ResidualSums::finish(double mean, PatchResidual& residual) {
   for (std::size_t h = 0; h < 2; ++h) residual.gathered[h] = kept(gathered[h] / all.count);
   residual.along_s = kept(std::max(0.0, s_step[0] * s_step[1] / n2));
   residual.along_t = kept(std::max(0.0, t_step[0] * t_step[1] / n2));
-  // Every other of the points that are there.
+  // Alternate open points.
   std::array<Rgb, 2> half{Rgb(0.0), Rgb(0.0)};
   std::size_t k = 0;
   for (const Point& p : points_) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Of one patch, what the points that are sampled say of the residual (surface_samples.h).
+// Statistics of the residual at the sampled points of one patch (surface_samples.h).
 #pragma once
 
 #include <array>
@@ -11,26 +11,27 @@
 
 namespace earthshine::raytrace {
 
-// The sums over one patch's points that PatchResidual is made of.
+// Sums over one patch's points, from which finish() fills a PatchResidual.
 class ResidualSums {
  public:
   void start(std::size_t points) { points_.assign(points, {}); }
-  // The point (x, y) of the patch, from 0 to 1, the material's reflectance, the radiosity that the
-  // solution has there, and the two parts of the illuminance.
+  // The point (x, y) of the patch, from 0 to 1, with the material's reflectance and the solution's
+  // radiosity and both parts of its illuminance there.
   void place(std::size_t point, double x, double y, const Rgb& rho, const Rgb& radiosity,
              const Rgb& lamps, const Rgb& gathered) {
     points_[point] = {true, x,  y, base::luminance(radiosity), rho, lamps, gathered, {}, {},
                       {},   {}, {}};
   }
-  // What one half of the rays found.
+  // The illuminances from one half of the rays.
   void set(std::size_t point, std::size_t half, const Rgb& lamps, const Rgb& gathered);
-  // Whether the point's weight is another by either half, or by the solution.
+  // Whether the point's weight differs strongly between the halves and the solution.
   [[nodiscard]] bool is_unsure(std::size_t point, double mean) const;
-  // Weighs the point by what further rays find there, in place of the halves: weights that follow
-  // their chance would count what both have missed as dark, what both have met as bright.
+  // Weights the point by the illuminance from independent rays. The weight would otherwise depend
+  // on the chance of the halves: light that both miss would count as dark, light that both hit as
+  // bright.
   void weigh_by(std::size_t point, const Rgb& lamps, const Rgb& gathered);
-  // Weighs each point by the larger of the radiosity that the solution has and that it should have,
-  // over `mean`.
+  // Weights each point by error_weight() of the larger of the solution's and the true radiosity,
+  // with respect to `mean`.
   void finish(double mean, PatchResidual& residual);
 
  private:

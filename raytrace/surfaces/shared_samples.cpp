@@ -6,9 +6,9 @@
 namespace earthshine::raytrace {
 namespace {
 
-// A coarse patch is held to be like the others until it has many more patches than this.
+// Weight of the prior from all coarse patches, in patches of a coarse patch.
 constexpr double like_others = 16.0;
-// Squared standard errors that what a patch finds must be beyond what all do, to count by itself.
+// Squared standard errors beyond which a patch's own difference overrides the common estimate.
 constexpr double standard_error = 4.0;
 
 double squared(double x) { return x * x; }

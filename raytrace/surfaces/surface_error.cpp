@@ -13,10 +13,10 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr double points = 8192.0;
-constexpr int matrix_rays = 64;  // per patch: the error goes through it, not the light
+constexpr int matrix_rays = 64;  // per patch: the matrix carries the error, not the light
 constexpr std::uint32_t replicate = 0x5E57;
 
-// What carries the error on, cast anew: a solution does not keep its form factors.
+// Casts the matrix for the error anew, because a solution does not store its form factors.
 radiosity::FormFactors matrix_of(const scenes::World& scene, const radiosity::Solution& solution,
                                  std::uint64_t seed) {
   radiosity::SkyRadiance sky;

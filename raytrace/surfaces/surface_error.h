@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The error of a radiosity solution over the surfaces themselves.
+// The error of a radiosity solution over the surfaces.
 #pragma once
 
 #include <cstdint>
@@ -12,31 +12,29 @@
 
 namespace earthshine::raytrace {
 
-// What a radiosity solution is wrong by, over the surfaces themselves.
-
-// Relative to the mean radiosity of the surfaces.
+// Parts of the error, relative to the mean radiosity of the surfaces.
 struct SolutionError {
-  ErrorEstimate form_factors;  // noise of rays, and what none of them finds
-  ErrorEstimate patches;       // one radiosity for a whole patch
-  ErrorEstimate lamps;   // noise of the shadow rays by which patches see lamps, Sun and emitters
-  ErrorEstimate solver;  // what the iteration left
+  ErrorEstimate form_factors;  // noise of rays, and light that they miss
+  ErrorEstimate patches;       // constant radiosity within a patch
+  ErrorEstimate lamps;         // noise of shadow rays to lamps, Sun and emitters
+  ErrorEstimate solver;        // remaining error of the iteration
   [[nodiscard]] ErrorEstimate total() const { return form_factors + patches + lamps + solver; }
 };
 
 struct SurfaceError {
-  // Root mean square of the error of the radiosity (luminance, all light together), interpolated
-  // between patches as pictures read it, over all area and relative to its mean. What is or should
-  // be more than four times as bright counts in proportion (error_weight), and of a patch no larger
-  // than a spot (SurfaceLight) the mean counts, as a pixel shows no more of it.
+  // RMS error of the radiosity (luminance, sum of all light), interpolated between patches as in
+  // pictures, over all area and relative to its mean. Points that are, or should be, more than four
+  // times as bright as the mean have reduced weight (error_weight). For patches no larger than a
+  // spot (SurfaceLight), the error of the mean counts, because a pixel does not resolve them.
   SolutionError parts;
-  double unweighted = 0.0;  // at points, each counted in full
-  bool known = false;       // false where nothing is lit
+  double unweighted = 0.0;  // at points, without error_weight
+  bool known = false;       // false if all is dark
   std::vector<std::string> not_captured;
   std::uint64_t rays = 0;
   double seconds = 0.0;
 };
 
-// By the residual of the solution (residual_error.h).
+// From the residual of the solution (residual_error.h).
 [[nodiscard]] SurfaceError surface_error(const scenes::World& scene,
                                          const radiosity::Solution& solution,
                                          const radiosity::SolveOptions& solver);

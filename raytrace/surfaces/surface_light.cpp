@@ -15,7 +15,7 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr std::uint8_t more_shadow_rays = 8;
-constexpr double of_the_error = 1e-3;  // to which the error's own equation is solved
+constexpr double of_the_error = 1e-3;  // tolerance of the equation of the error
 
 constexpr double spots = 256.0;  // along the scene's diagonal
 
@@ -145,7 +145,7 @@ std::vector<double> LightOnSurfaces::brought(std::vector<double> residual,
   return found;
 }
 
-// Per coarse patch and column: means of a residual.
+// Means of a residual, per coarse patch and column.
 std::vector<double> LightOnSurfaces::means_of(const std::vector<double>& residual,
                                               std::size_t columns) const {
   const std::size_t coarse = factors_.count();
@@ -192,7 +192,7 @@ void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std
     const std::uint32_t i = which[n];
     const PatchResidual& seen = samples.residual[i];
     if (base::max_component(reflectances_.of(patches(), i)) <= 0.0) continue;  // not sampled
-    if (seen.taken == 0) {  // wholly covered: no light reaches it
+    if (seen.taken == 0) {  // completely covered: no light
       std::fill_n(&light_.lamps[i * columns], columns, 0.0F);
       std::fill_n(&light_.gathered[i * columns], columns, 0.0F);
       if (!light_.open_share.empty()) light_.open_share[i] = 0.0;
@@ -216,7 +216,7 @@ void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std
   factors_.shares.tell_all(light_.shadow_rays.data(), light_.shadow_rays.size());
 }
 
-// more: that bounces bring, per coarse patch and column.
+// more: indirect correction by bounces, per coarse patch and column.
 void LightOnSurfaces::take_gathered(const SurfaceSamples& samples, const SharedSamples& sharing,
                                     std::span<const std::uint32_t> which,
                                     const std::vector<double>& more) {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A solution that is made better without another matrix: the matrix stays on the coarse patches
-// that were solved for, light is kept on patches as fine as wanted. What samples find
-// (surface_samples.h) goes into each patch; what it changes elsewhere, e = (1 - rho F)^-1 r, goes
-// through the matrix (the equation of the error; Lischinski, Smits and Greenberg 1994 bound it,
-// here it is solved with the residual itself).
+// Improves a solution without another matrix: the matrix stays on the coarse patches, while the
+// light is stored on patches as fine as needed. Samples (surface_samples.h) correct the light of
+// each patch; the matrix propagates the correction, e = (1 - rho F)^-1 r (the equation of the
+// error; Lischinski, Smits and Greenberg 1994 bound it, here it is solved for the residual itself).
 #pragma once
 
 #include "radiosity/fill_solution.h"
@@ -15,13 +14,13 @@ namespace earthshine::raytrace {
 
 class SharedSamples;
 
-// Of ranks that divide the factors each has the patches and their light, which samples read, and
-// the first alone the rest: all of them must call what needs the matrix or changes the light, with
-// what the first one gives.
+// If ranks divide the form factors, each rank has the patches and their light, and only the root
+// rank has the rest. All ranks must call functions that use the matrix or change the light; the
+// root's arguments count.
 class LightOnSurfaces {
  public:
-  // coarse: solved with those factors, balanced or not; `rays` of them a patch. Of its light only
-  // direct_lx and indirect_lx are read.
+  // coarse: solved with these factors, balanced or not; rays: of each patch. Of the coarse light
+  // only direct_lx and indirect_lx are read.
   LightOnSurfaces(const scenes::World& scene, radiosity::Solution coarse,
                   radiosity::FormFactors factors, double rays);
 
@@ -32,26 +31,26 @@ class LightOnSurfaces {
 
   [[nodiscard]] bool is_spot(std::uint32_t patch) const { return light_.is_spot(patch); }
 
-  // The first rank's, as are the two below. Luminance, over what no body covers.
+  // On the root rank only, like lamp_rays() and gather_rays(). Luminance, over the open parts.
   [[nodiscard]] double mean_radiosity() const;
-  [[nodiscard]] double told_mean() const;  // the same, by all ranks and to all
-  // Samples that are in the light of a patch already.
+  [[nodiscard]] double told_mean() const;  // collective; on all ranks
+  // Samples already in the light of a patch.
   [[nodiscard]] double lamp_rays(std::uint32_t patch) const { return lamp_rays_[patch]; }
   [[nodiscard]] double gather_rays(std::uint32_t patch) const { return gather_rays_[patch]; }
 
-  // The illuminance, per coarse patch and column, that a residual of the radiosity (per patch and
-  // column) brings there by all its bounces: F (1 - rho F)^-1 r.
+  // Illuminance per coarse patch and column by all bounces of a residual of the radiosity (per
+  // patch and column): F (1 - rho F)^-1 r.
   [[nodiscard]] std::vector<double> brought(std::vector<double> residual,
                                             std::size_t columns) const;
-  // The coarse patch that a patch is of; the first rank's.
+  // The coarse patch of a patch; on the root rank only.
   [[nodiscard]] std::uint32_t coarse(std::uint32_t patch) const { return coarse_[patch]; }
 
-  // Takes in samples, each patch by the share of its samples in all that it has seen; what cosine
-  // rays find is shared between the patches of a coarse one (shared_samples.h).
+  // Adds samples to the light, each patch weighted by the share of the new samples in all. The
+  // patches of a coarse patch share the light from cosine rays (shared_samples.h).
   void correct(const SurfaceSamples& samples, std::span<const std::uint32_t> which,
                std::span<const SampleBudget> budget);
-  // Halves take what is interpolated at their middle; they have the samples of their parent for
-  // what gathers, which count by the share kept_rays (per patch), none for shadows. Returns the
+  // Divides patches. Each part takes the light interpolated at its centre. It inherits the fraction
+  // kept_rays (per patch) of its parent's cosine rays and none of its shadow rays. Returns the
   // parent of each patch.
   std::vector<std::uint32_t> cut(const std::vector<radiosity::Cut>& wanted,
                                  std::span<const float> kept_rays);
@@ -59,7 +58,7 @@ class LightOnSurfaces {
   struct Finished {
     radiosity::Solution solution;
     double lacks =
-        0.0;  // of the mean radiosity or the flux, luminance, before the ledger was closed
+        0.0;  // defect of the energy ledger, relative to the mean radiosity or the flux, luminance
   };
   [[nodiscard]] Finished finished() const;
 
@@ -79,11 +78,12 @@ class LightOnSurfaces {
   SurfaceLight light_;
   radiosity::FormFactors factors_;
   radiosity::PatchAlbedos reflectances_;
-  std::vector<Rgb> emitted_;                // per coarse patch, through form factors; empty: none
-  std::vector<std::uint32_t> coarse_;       // per patch
-  std::vector<double> coarse_reflectance_;  // per own coarse row and colour
+  std::vector<Rgb> emitted_;                     // per coarse patch: emission in the form factors;
+                                                 // empty: none
+  std::vector<std::uint32_t> coarse_;            // per patch
+  std::vector<double> coarse_reflectance_;       // per own coarse row and colour
   std::vector<double> lamp_rays_, gather_rays_;  // per patch
-  std::vector<double> escape_, lost_;            // per patch: shares of what leaves it
+  std::vector<double> escape_, lost_;            // per patch: shares of the light that leaves it
 };
 
 }  // namespace earthshine::raytrace

@@ -7,9 +7,10 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Standard errors, above which it is no noise. Where one of n points alone is lit, the mean is one.
+// Standard errors below which unevenness is noise. If one of n points is lit, the mean is one
+// standard error.
 constexpr double clear = 0.9;
-// Few points miss much of what is uneven: the expected value counts as one more.
+// Few points miss much of the unevenness: the expected value has the weight of one more point.
 constexpr double expected_points = 1.0;
 constexpr float most_kept_rays = 0.5F;
 
@@ -36,7 +37,7 @@ void SurfaceRefiner::see(const radiosity::Patches& patches, const SurfaceSamples
     const double within = double(r.square) - (noise.empty() ? double(r.mean_square) : noise[i]);
     if (within <= clear * double(r.square_error)) continue;
     const double part = own * double(r.open) * patches.area_m2[i] / area_m2_;
-    // What is uneven is off a piece's light as noise would be.
+    // For the light of the parts, unevenness acts as noise does.
     if (!noise.empty()) {
       kept_rays_[i] = std::min(most_kept_rays, static_cast<float>(noise[i] / (noise[i] + within)));
     }

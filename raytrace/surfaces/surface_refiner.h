@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The refiner of solutions whose residual is sampled: all light together, as it is.
+// Refiner for solutions with a sampled residual: the sum of all light, unscaled.
 #pragma once
 
 #include "radiosity/patches/refiner.h"
@@ -9,16 +9,16 @@ namespace earthshine::raytrace {
 
 class SurfaceRefiner : public radiosity::Refiner {
  public:
-  // spot_m2: no patch as small is cut (SurfaceLight).
+  // Patches up to this area are not divided (SurfaceLight).
   explicit SurfaceRefiner(const radiosity::Patches& patches, double spot_m2 = 0.0);
 
-  // Takes samples of some patches, of all of them the first time. noise: of the mean square of r,
-  // the light's own noise, per patch; empty: the mean square that patches are off by as a whole.
+  // Takes samples of some patches; of all patches in the first call. noise: of the mean square of
+  // r, from the light's own samples, per patch; empty: uses the squared mean of r in its place.
   void see(const radiosity::Patches& patches, const SurfaceSamples& samples,
            std::span<const std::uint32_t> which, std::span<const double> noise = {});
   std::vector<std::uint32_t> follow(const radiosity::Patches& patches,
                                     const std::vector<std::uint32_t>& parent);
-  // Per patch, how far the rays that its light is known by count for its sub-patches.
+  // Per patch, the fraction of its light's rays that its parts inherit.
   [[nodiscard]] std::span<const float> kept_rays() const { return kept_rays_; }
 
  private:

@@ -16,14 +16,14 @@
 namespace earthshine::raytrace {
 namespace {
 
-constexpr int source_points = 16;  // that radiosity::find_sources() gives a small distant source
+constexpr int source_points = 16;  // by radiosity::find_sources() for a small distant source
 constexpr std::size_t wide_source_samples = 4;
-constexpr std::size_t told_after = 1024;  // patches
-// Points that are tried for one that is sampled, where a body is known to cover some: what a sliver
-// of a patch says that looks out of the body counts by the sliver's area.
+constexpr std::size_t told_after = 1024;  // patches between calls of progress
+// Candidates per sampled point on a partly covered patch. They give the open share, the weight of
+// the patch, accurately.
 constexpr std::uint32_t tried_points = 16;
-// Further rays of a point, into its hemisphere and to each source, that say how bright it is where
-// its halves do not.
+// Independent rays of a point, over the hemisphere and to each source, for its weight if its halves
+// disagree.
 constexpr std::uint32_t weighing_gather_rays = 16, weighing_shadow_rays = 16;
 
 Rgb sum_of_groups(const std::vector<float>& values, std::size_t patch, std::size_t columns) {
@@ -83,7 +83,7 @@ SurfaceSampler::SurfaceSampler(const scenes::World& scene, std::uint64_t seed)
 void SurfaceSampler::weigh(PatchSampler& sampler, std::span<const SurfaceSpot> places,
                            base::Key key, double mean, ResidualSums& sums, std::size_t points,
                            bool gathers) const {
-  const std::size_t gather_key = 6 + 3 * sources_.size();  // behind the aims of sample()
+  const std::size_t gather_key = 6 + 3 * sources_.size();  // after the aims of sample()
   for (std::size_t point = 0; point < points; ++point) {
     if (!sums.is_unsure(point, mean)) continue;
     sampler.start(1);
@@ -125,11 +125,11 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
     table = {light.solution, light.solution.radiosity, true, sight};
     bright = BrightPatches(light.solution);
   }
-  // Alone, joined: what each part of L~ is at a point.
+  // Without groups: both parts of L~ at a point.
   const RadianceTable lamps_table(light.solution, light.lamps, false, sight),
       gathered_table(light.solution, light.gathered, false, sight);
 
-  const std::size_t aims_key = 4 + 3 * sources_.size();  // behind those of weigh()
+  const std::size_t aims_key = 4 + 3 * sources_.size();  // after the keys of shadow rays in weigh()
   const bool of_light = of == SamplesOf::Light;
   const bool joins =
       hears == base::Hears::All || base::ranks() == nullptr || base::ranks()->number() == 0;
@@ -143,9 +143,9 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
   }
   if (joins) found.residual.resize(light.count());
   found.rays = sight.rays();
-  constexpr std::size_t chunk = 32;  // of patches; told_after is a multiple of it
+  constexpr std::size_t chunk = 32;  // patches; told_after is a multiple of it
   std::vector<std::uint64_t> rays_of((which.size() + chunk - 1) / chunk, 0);
-  // Ranks wait for each other at the end of a batch: they have few.
+  // Ranks wait for each other at the end of a batch: few batches if there are ranks.
   const std::size_t batch = base::ranks() == nullptr
                                 ? told_after
                                 : std::max(told_after, which.size() / (8 * chunk) * chunk);
@@ -165,11 +165,11 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
                               : radiosity::patch_emit(scene_.scene, patches, patch);
       PatchResidual& residual = seen[n % batch];
       residual.taken = work.points;
-      if (base::max_component(rho) <= 0.0) continue;  // B = M, whatever falls on it
+      if (base::max_component(rho) <= 0.0) continue;  // B = M, whatever its illuminance
       const base::Key key =
           base::Key(seed_, base::Stream::ErrorBudget, radiosity::identity(patches, patch))
               .with(pass);
-      // The two halves of a spot's points have nothing in common, for the product of their means.
+      // For the product of their means, both halves of a spot's points are independent.
       const std::array<base::SobolOwen4, 2> where = {base::SobolOwen4(key),
                                                      base::SobolOwen4(key.with(1))};
       const bool is_spot = light.is_spot(patch);

@@ -10,10 +10,10 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Cosine of the angle between triangles that count as one plane.
+// Cosine between the normals of coplanar triangles.
 constexpr double same_plane = 1.0 - 1e-9;
 
-// Vertices at one place have one number.
+// Gives vertices at the same position one number.
 std::vector<std::uint32_t> welded(const scenes::Scene& scene) {
   std::vector<std::uint32_t> order(scene.vertices.size()), number(order.size());
   for (std::uint32_t k = 0; k < order.size(); ++k) order[k] = k;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edges of the scene's surfaces, and which of them a point sees as outlines.
+// Edges of the scene's surfaces, and their visibility as outlines.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@ namespace earthshine::raytrace {
 
 struct SceneEdge {
   Vec3 a{0.0}, b{0.0};
-  // Unit normals of the triangles that share it; with one triangle, or more than two, the edge is
-  // an outline from everywhere.
+  // Unit normals of the triangles at the edge. With one triangle, or more than two, the edge is an
+  // outline from everywhere.
   Vec3 normal_a{0.0}, normal_b{0.0};
   bool is_border = true;
 
-  // Seen from a point, or, with a distant one, from a direction.
+  // Whether the edge is an outline from a point, or from a direction if is_distant.
   [[nodiscard]] bool is_outline(const Vec3& from, bool is_distant) const {
     if (is_border) return true;
     const Vec3 way = is_distant ? from : from - a;
@@ -24,7 +24,7 @@ struct SceneEdge {
   }
 };
 
-// Without those between triangles of one plane.
+// All edges but those between coplanar triangles.
 [[nodiscard]] std::vector<SceneEdge> find_edges(const scenes::Scene& scene);
 
 }  // namespace earthshine::raytrace

@@ -18,24 +18,25 @@ namespace {
 
 using base::pi;
 
-constexpr double far_m = 1e9;  // stands for infinity
+constexpr double far_m = 1e9;  // represents infinity
 constexpr std::size_t stop_asked_after = 1024;
-constexpr int facet_points = 64;                     // that tell how much of it shows a source
-constexpr double least_share = 0.25 / facet_points;  // of a facet whose nearest point alone does
+constexpr int facet_points = 64;                     // to estimate the part that shows a source
+constexpr double least_share = 0.25 / facet_points;  // of a facet if only its nearest point shows
+                                                     // the source
 
 using Source = WitnessSource;
 
 struct Facet {
   scenes::Corners corners;
   Vec3 normal{0.0};       // unit, on the camera's side
-  double height_m = 0.0;  // of the camera over it
+  double height_m = 0.0;  // height of the camera above it
   double area_m2 = 0.0, offset_m = 0.0;
   const scenes::Material* material = nullptr;
   bool is_mirror = false, is_glossy = false;
 };
 
-// Of a facet, as much as shows a disc of that angular radius about a direction of view, and its
-// middle.
+// The part of a facet that shows a disc of that angular radius around a direction of view, and the
+// centre of the part.
 struct ShownPart {
   double share = 0.0;
   Vec3 middle{0.0};
@@ -47,7 +48,7 @@ ShownPart shown_part(const scenes::Corners& corners, const Vec3& eye, const Vec3
   ShownPart shown;
   double met = 0.0;
   for (int k = 0; k < facet_points; ++k) {
-    // An additive sequence folded onto the triangle.
+    // A low-discrepancy (additive) sequence, folded onto the triangle.
     double u = std::fmod(0.5 + k * base::r2_u, 1.0), v = std::fmod(0.5 + k * base::r2_v, 1.0);
     if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
     const Vec3 point = corners.a + u * (corners.b - corners.a) + v * (corners.c - corners.a);
@@ -147,7 +148,7 @@ void ImageFinder::add_straight() {
     Source source;
   };
   std::vector<Image> images;
-  SpotMap sharp(camera_, 1.0);  // areas: luminance 1
+  SpotMap sharp(camera_, 1.0);  // total image areas, as luminance 1
   for (Source source : scene_.sources()) {
     if (source.luminance <= 0.0 || (source.is_distant && source.angle_rad <= 0.0)) continue;
     if (source.is_distant) {
@@ -170,7 +171,7 @@ void ImageFinder::add_straight() {
   std::size_t asked = 0;
   for (const Image& image : images) {
     if (++asked % stop_asked_after == 0 && scene_.stops()) return;
-    // A fine mesh has millions that are small and together large.
+    // The triangles of a fine mesh may be small and together large.
     if (sharp.most_around(image.spot.film) >= tuning::large_px2) continue;
     Spot spot = image.spot;
     spot.area_px2 *= visible_share(image.source);
@@ -178,7 +179,7 @@ void ImageFinder::add_straight() {
   }
 }
 
-// What a beam lights, a piece for each of its rays.
+// Spots lit by narrow beams, one for each of their rays.
 void ImageFinder::add_beams() {
   const scenes::Scene& scene = shared_.scene;
   for (const scenes::Beam& beam : scenes::narrow_beams(scene.lamps)) {
@@ -290,8 +291,8 @@ void ImageFinder::reflect(const Facet& facet, const Source& source) {
   add_visible(facet, source, on_facet, spot, images_);
 }
 
-// Of the lobe cos^n, a Gaussian of variance 1 / n, widened by the source's disc of angular radius
-// r, whose variance along an axis is r^2 / 4.
+// The lobe cos^n as a Gaussian of variance 1 / n, widened by the source's disc of angular radius r,
+// whose variance along an axis is r^2 / 4.
 void ImageFinder::add_highlight(const Facet& facet, const Source& source, const Vec3& at) {
   const Vec3 to_camera = camera_.position - at;
   const double camera_m = glm::length(to_camera);
@@ -306,13 +307,14 @@ void ImageFinder::add_highlight(const Facet& facet, const Source& source, const 
   const double angle = source.is_distant ? source.angle_rad : source.radius_m / source_m;
   const double lobe_variance = 1.0 / facet.material->shininess;
   const double variance = lobe_variance + 0.25 * angle * angle;
-  const double off2 = 2.0 * (1.0 - glm::dot(in, brdf.mirrored));  // of the angle, squared
+  const double off2 = 2.0 * (1.0 - glm::dot(in, brdf.mirrored));  // squared angle from the lobe's
+                                                                  // centre
   const double cosine = glm::dot(in, facet.normal);
   if (off2 > tuning::most_deviations2 * variance || cosine <= 0.0) return;
   const double lobe = lobe_variance / variance * std::exp(-0.5 * off2 / variance) *
                       base::luminance(brdf.eval_specular(brdf.mirrored, cosine));
   Spot spot = scene_.spot_at(at, 0.0);
-  // Seen from the camera, the angle at the lobe turns by more than the view does.
+  // A turn of the view by an angle turns the direction in the lobe by a larger one.
   const double turn = 1.0 + camera_m / source_m;
   const double lobe_px2 = 2.0 * pi * variance / (turn * turn) * px2_per_sr(-out);
   spot.area_px2 =
@@ -325,7 +327,7 @@ void ImageFinder::add_highlight(const Facet& facet, const Source& source, const 
 void ImageFinder::add_visible(const Facet& facet, const Source& source, const Vec3& at, Spot spot,
                               SpotMap& spots) {
   if (!counts(spot)) return;
-  // Off the edge, where the nearest point of a facet often lies.
+  // Away from the edge, where the nearest point of a facet often is.
   const Vec3 middle = (facet.corners.a + facet.corners.b + facet.corners.c) / 3.0;
   const Vec3 start = at + 1e-3 * (middle - at) + facet.offset_m * facet.normal;
   const Vec3 back = camera_.position - start;
@@ -337,7 +339,7 @@ void ImageFinder::add_visible(const Facet& facet, const Source& source, const Ve
   if (spot.luminance > 0.0) spots.add(spot);
 }
 
-// By five rays, to the middle and to what is about it.
+// By five rays: to the centre and around it.
 double ImageFinder::visible_share(const Source& source) {
   const base::Frame3 frame = base::frame_around(source.normal);
   constexpr double about = 0.7;
@@ -374,7 +376,7 @@ Spot WitnessScene::spot_at(const Vec3& point, double radius_m) const {
   spot.film = camera.film_from(camera.position, point);
   const Vec3 rim = camera.position + camera.lens_radius_m * camera.right;
   spot.blur_px = glm::length(camera.film_from(rim, point) - spot.film);
-  // Across the line of sight a tangent grows by the square of the secant of the angle to the axis.
+  // Off the axis, the tangent grows with the square of the secant of the angle to the axis.
   spot.radius_px =
       radius_m * glm::length(way) / (depth * depth) * camera.rows / (2.0 * camera.half_height);
   return spot;

@@ -24,14 +24,14 @@ struct LightView {
   const scenes::FlatMirror* mirror = nullptr;
   std::uint32_t number = scenes::no_mirror;
   bool is_distant = false;
-  Vec3 from{0.0};  // its place, or the unit direction toward it
+  Vec3 from{0.0};  // position, or unit direction toward it
 
   [[nodiscard]] Vec3 toward(const Vec3& point) const {
     return is_distant ? from : glm::normalize(from - point);
   }
 };
 
-// What a source's light falls on, beyond the outlines that it sees.
+// Finds the light on surfaces beyond the outlines that a source sees.
 class LightStrips {
  public:
   LightStrips(WitnessScene& scene, SpotMap& spots)
@@ -68,7 +68,8 @@ class LightStrips {
       const Outline& outline = outlines[k];
       const SceneEdge& edge = edges[outline.edge];
       const LightView& view = views_[outline.view];
-      // Even over the length; and once each edge, or every so many, for small openings.
+      // Probes are evenly spaced over the total length. In addition each short edge, or one in
+      // `stride`, is probed once, to find small openings.
       const bool is_long = next_m < at_m + outline.length_m;
       if (!is_long && k % stride == 0) probe(view, edge, 0.0, 1.0);
       for (; next_m < at_m + outline.length_m; next_m += step_m) {
@@ -82,14 +83,14 @@ class LightStrips {
 
  private:
   struct Receiver {
-    Vec3 position{0.0}, normal{0.0};  // normal: on the side of the light
+    Vec3 position{0.0}, normal{0.0};  // normal: on the lit side
     const scenes::Material* material = nullptr;
     double offset_m = 0.0;
   };
 
   void list_views() {
     for (const WitnessSource& source : scene_.sources()) {
-      // Emitting triangles light surfaces as parts of something larger.
+      // Emitting triangles light surfaces as parts of larger sources.
       if (source.lamp == nullptr && !source.is_distant) continue;
       if (!source.is_distant && source.radius_m > tuning::widest * diagonal_m_) continue;
       views_.push_back({&source, nullptr, scenes::no_mirror, source.is_distant, source.middle});
@@ -107,7 +108,7 @@ class LightStrips {
     }
   }
 
-  // Where the light that passes a point ends; nothing if it ends before it, or nowhere.
+  // The end of the light ray through a point; empty if it ends before the point, or hits nothing.
   std::optional<Receiver> receive(const LightView& view, const Vec3& point) {
     const scenes::Scene& scene = shared_.scene;
     const Vec3 direction = -view.toward(point);
@@ -139,7 +140,8 @@ class LightStrips {
     return std::nullopt;
   }
 
-  // Of the light that it reflects to the camera, cd/m^2; 0 where that is not in view.
+  // Luminance of the light that the receiver reflects to the camera, cd/m^2; 0 if it is not in
+  // view.
   double luminance(const LightView& view, const Receiver& at) {
     if (!at.material->reflects()) return 0.0;
     const Vec3 to_camera = camera_.position - at.position;
@@ -168,7 +170,7 @@ class LightStrips {
            scene_.share(start, view.toward(start), reach, view.number);
   }
 
-  // [from, to]: the part of the edge that is asked for, in its lengths.
+  // [from, to]: the part of the edge to probe, in units of its length.
   void probe(const LightView& view, const SceneEdge& edge, double from, double to,
              bool is_part = false) {
     const Vec3 whole = edge.b - edge.a, at = edge.a + 0.5 * (from + to) * whole;
@@ -192,7 +194,7 @@ class LightStrips {
     const LightView& view;
     Vec3 at, across, step;
   };
-  // Adds a strip that is no longer than a pixel, or any if `adds`. Returns its length, px.
+  // Adds a strip that is no longer than a pixel, or any strip if `adds`. Returns its length, px.
   double probe(const Strip& strip, bool adds = false) {
     const double beside_m = beside_m_;
     const auto light_at = [&](double off) {
@@ -202,7 +204,7 @@ class LightStrips {
     if (!first) return 0.0;
     const double lit = luminance(strip.view, *first);
     if (lit <= 0.0) return 0.0;
-    // The surface as a plane: where light that passes `target` falls on it.
+    // Takes the surface as a plane: where light through `target` reaches it.
     const auto on_plane = [&](const Vec3& target) {
       const Vec3 way = strip.view.toward(target);
       return target +
@@ -228,7 +230,7 @@ class LightStrips {
     const double wide_m = tuning::wide_px / px_per_m;
     auto width = width_of(wide_m, beside_m, is_same);
     double off = width ? 0.5 * *width : 0.0;
-    if (!width) {  // the shadow of something thin
+    if (!width) {  // shadow of a thin body
       width = width_of(wide_m, beside_m, [&](double dark) { return !is_same(-dark); });
       off = width ? -0.5 * *width : 0.0;
     }
@@ -250,7 +252,7 @@ class LightStrips {
   const CameraModel& camera_;
   SpotMap& spots_;
   double diagonal_m_ = 0.0;
-  double beside_m_ = 0.0;  // off an edge: rays tell its sides apart, wherever its ends lie
+  double beside_m_ = 0.0;  // distance from an edge at which rays distinguish its sides
   std::vector<LightView> views_;
 };
 

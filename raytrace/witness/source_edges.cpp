@@ -11,7 +11,7 @@
 namespace earthshine::raytrace {
 namespace {
 
-// A pixel's mean and the standard deviation of its samples.
+// Mean and standard deviation of a pixel's samples.
 struct PixelStatistics {
   double mean = 0.0, deviation = 0.0;
 };
@@ -44,7 +44,8 @@ std::vector<std::uint32_t> wanted_for_source_edges(const PixelSums& sums, std::u
         if (!window.contains(qx, qy)) continue;
         const std::size_t q = window.index(qx, qy);
         source = source || sums.source[q].luminance > 0.0;
-        // A pixel's own samples would stop where they happen to agree, and its mean be biased.
+        // The pixel's own samples do not decide: they would stop when they agree by chance, and
+        // bias the mean.
         if (qx == x && qy == y) continue;
         const PixelStatistics pixel = statistics_of(sums, q);
         low = std::min(low, pixel.mean);

@@ -13,7 +13,7 @@ namespace {
 
 using base::pi;
 
-// What the camera sees of sources, along lines of the film.
+// Finds strips of sources along lines of the film.
 class SourceStrips {
  public:
   SourceStrips(WitnessScene& scene, SpotMap& spots)
@@ -40,7 +40,7 @@ class SourceStrips {
     double length_px;
   };
 
-  // Pixels where a source may be seen.
+  // Pixels that may show a source.
   void find_pixels() {
     pixels_.assign(
         static_cast<std::size_t>(camera_.columns) * static_cast<std::size_t>(camera_.rows), false);
@@ -90,7 +90,7 @@ class SourceStrips {
   }
 
   void add_line(const glm::dvec2& a, const glm::dvec2& b) {
-    // Its part over the picture, by Liang and Barsky.
+    // Clips the line to the picture (Liang and Barsky).
     double from = 0.0, to = 1.0;
     const glm::dvec2 way = b - a, size(camera_.columns, camera_.rows);
     for (int k = 0; k < 2; ++k) {
@@ -114,7 +114,7 @@ class SourceStrips {
     }
   }
 
-  // Of what is no surface of the scene: lamps and Suns.
+  // Outlines of sources that are no surfaces of the scene: lamps and Suns.
   void add_outline(const WitnessSource& source) {
     const bool is_sun = source.is_distant && source.angle_rad > 0.0;
     const bool is_lamp = source.lamp != nullptr && source.luminance > 0.0;
@@ -149,7 +149,7 @@ class SourceStrips {
       if (const auto width = width_of(tuning::wide_px, tuning::beside_px, is_lit)) {
         add(line.at + 0.5 * *width * across, *width, step, lit);
       }
-      // Something thin before the source.
+      // A thin body in front of the source.
       const auto is_dark = [&](double off) { return !is_lit(-off); };
       if (const auto width = width_of(tuning::wide_px, tuning::beside_px, is_dark)) {
         add(line.at - 0.5 * *width * across, *width, step, lit);
@@ -166,7 +166,7 @@ class SourceStrips {
     if (spot.area_px2 * lit > scene_.least) spots_.add(spot);
   }
 
-  // Of sources, at a place of the film, cd/m^2: through straight glass and off flat mirrors.
+  // Luminance of sources at a film position, cd/m^2: through straight glass and by flat mirrors.
   double luminance(const glm::dvec2& film) {
     const scenes::Scene& scene = shared_.scene;
     Vec3 from = camera_.position;

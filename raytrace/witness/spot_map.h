@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light that fills less than a pixel, as the witness expects it in the picture.
+// Light that fills less than a pixel, as the witness predicts it for the picture.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -9,14 +9,14 @@
 
 namespace earthshine::raytrace {
 
-// An image of a source, a highlight or a piece of lit surface, as a pinhole shows it.
+// An image of a source, a highlight or a piece of lit surface, projected by a pinhole.
 struct Spot {
-  glm::dvec2 film{0.0};                    // its middle, px
-  double radius_px = 0.0, blur_px = 0.0;   // blur: the radius that a lens makes of each point
-  double area_px2 = 0.0, luminance = 0.0;  // cd/m^2
+  glm::dvec2 film{0.0};                    // centre, px
+  double radius_px = 0.0, blur_px = 0.0;   // blur: radius of the lens blur of a point
+  double area_px2 = 0.0, luminance = 0.0;  // luminance: cd/m^2
 };
 
-// Per pixel, the mean and the mean square of what a camera sample finds of the spots there.
+// Per pixel, the mean and the mean square of a camera sample's light from spots.
 class SpotMap {
  public:
   struct Pixel {
@@ -27,10 +27,10 @@ class SpotMap {
 
   // filter_px: full width of the pixel filter's support.
   SpotMap(const CameraModel& camera, double filter_px);
-  // Divides a spot among the pixels that see some of it, as if it were a square.
+  // Divides a spot, as a square, among the pixels that it overlaps.
   void add(const Spot& spot);
   [[nodiscard]] const Pixel& at(int x, int y) const { return pixels_[index(x, y)]; }
-  // The most light of a pixel at that place of the film or beside it.
+  // The greatest `light` of the pixel at that film position and its neighbours.
   [[nodiscard]] double most_around(const glm::dvec2& film) const;
   [[nodiscard]] bool contains(const Spot& spot) const;
 

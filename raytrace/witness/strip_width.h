@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How wide a strip is that begins at an edge.
+// The width of a strip that begins at an edge.
 #pragma once
 
 #include <array>
@@ -12,7 +12,8 @@ namespace earthshine::raytrace {
 // Both edges of a strip report it.
 inline constexpr double share_of_edge = 0.5;
 
-// The width of what begins at 0 and holds `is_same` true, up to `wide`: nothing if it ends nowhere.
+// The width of the strip that begins at 0 and in which `is_same` is true, between `least` and
+// `wide`; empty if it is wider.
 template <class IsSame>
 std::optional<double> width_of(double wide, double least, const IsSame& is_same) {
   double low = least;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strips of light, or of shadow, thinner than a pixel, found along the edges that bound them.
+// Strips of light or shadow thinner than a pixel, found along the edges that bound them.
 #pragma once
 
 #include <span>
@@ -9,12 +9,12 @@
 
 namespace earthshine::raytrace {
 
-// Along the outlines that the camera sees before and of sources: strips of these, straight and in
-// flat mirrors.
+// Strips of sources, direct and in flat mirrors, along the outlines of sources and of bodies in
+// front of them.
 void add_source_strips(WitnessScene& scene, std::span<const SceneEdge> edges, SpotMap& spots);
 
-// Along the outlines that a source of small extent sees, or its image in a flat mirror: strips of
-// its light on surfaces in view.
+// Strips of light on visible surfaces, along the outlines that a small source sees, directly or by
+// a flat mirror.
 void add_light_strips(WitnessScene& scene, std::span<const SceneEdge> edges, SpotMap& spots);
 
 }  // namespace earthshine::raytrace

@@ -35,8 +35,8 @@ double Witness::allowed() const {
   return tuning::noise_share * options_.error * options_.luminance;
 }
 
-// Samples that miss a spot leave all of its light out. One that meets it by chance makes the pixel
-// far too bright, which weighs no more than error_bright times the mean.
+// Samples that all miss a spot lose its light. A sample that hits it by chance makes the pixel far
+// too bright, but its weight is limited to error_bright times the mean.
 double Witness::risk(const SpotMap::Pixel& pixel) const {
   const double mean = options_.luminance;
   const double missed = error_weight(pixel.light, mean) * pixel.light;
@@ -71,7 +71,7 @@ double Witness::samples_of_source(const SpotMap::Pixel& pixel) const {
   const double for_rim =
       error > 0.0 ? std::pow(error_of_edge * std::sqrt(rim_px) / (coverage * error), 4.0 / 3.0)
                   : 0.0;
-  // Sobol points are most even in powers of two.
+  // Sobol points are most uniform for powers of two.
   const double samples =
       std::min(tuning::most_for_one, std::max(tuning::most_hits / coverage, for_rim));
   return std::bit_ceil(static_cast<std::uint32_t>(samples));
@@ -83,7 +83,8 @@ double Witness::samples_of_lit(const SpotMap::Pixel& pixel) const {
   const double most = std::min(tuning::most_for_one, tuning::most_hits / coverage);
   if (allowed() <= 0.0) return most;
   if (risk(pixel) < least_risk_) return 0.0;
-  const double share = double(camera_.columns) * camera_.rows / chosen_;  // of the error allowed
+  const double share = double(camera_.columns) * camera_.rows / chosen_;  // share of the allowed
+                                                                          // error
   const double deviation = error_weight(pixel.light, options_.luminance) *
                            std::sqrt(pixel.square - pixel.light * pixel.light);
   const double needed = std::pow(deviation / allowed(), 2.0) / share;

@@ -114,7 +114,7 @@ struct Work {
   const raytrace::Progress& progress;
 };
 
-// What a picture shows, took and states of itself; solution: that it reads, if any.
+// Adds a picture's luminance, cost and stated error; solution: the one that it reads, if any.
 void add_picture(StepResult& result, const Work& work, const raytrace::Frame& frame,
                  const radiosity::SolveOptions& solver, const raytrace::RenderOptions& options,
                  const radiosity::Solution* solution) {
@@ -167,8 +167,8 @@ std::optional<StepResult> run_plain(const Work& work, SolutionShelf& shelf) {
   return result;
 }
 
-// As `render --error` does: samples go where they help until the picture says that it is as exact
-// as wanted. The statements that decide about that are part of the cost.
+// As `render --error`: adds samples where they help until the stated error is as wanted. The cost
+// includes the error statements of all rounds.
 std::optional<StepResult> run_steered(const Work& work) {
   const auto& [study, view, step, asked, progress] = work;
   const radiosity::SolveOptions solver =
@@ -190,7 +190,7 @@ std::optional<StepResult> run_steered(const Work& work) {
   cost.cpu_seconds = clock.cpu();
   if (frame.report.stopped) return std::nullopt;
   add_picture(result, work, frame, solver, options, asked.effects.solution ? &solution : nullptr);
-  cost.statement_cpu_seconds = 0.0;  // within cpu_seconds
+  cost.statement_cpu_seconds = 0.0;  // included in cpu_seconds
   return result;
 }
 

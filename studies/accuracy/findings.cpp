@@ -44,7 +44,7 @@ std::vector<SeriesLaw> laws_of(const std::vector<MeasuredStep>& points, double r
   return laws;
 }
 
-// Error times root of the seconds is the same for any number of paths.
+// Error times root of the seconds is constant in the number of paths.
 std::optional<double> seconds_of_paths(const std::vector<Trade>& trades, double wanted) {
   const Trade* finest = nullptr;
   for (const Trade& trade : trades) {
@@ -56,7 +56,7 @@ std::optional<double> seconds_of_paths(const std::vector<Trade>& trades, double 
   return finest->seconds * std::pow(finest->error / wanted, 2);
 }
 
-// Of one method's points.
+// Among one method's points.
 std::optional<std::size_t> cheapest_of(const std::vector<Trade>& trades, const std::string& method,
                                        double wanted) {
   std::vector<Trade> own;
@@ -159,8 +159,8 @@ std::vector<Worth> worth_of_methods(const std::vector<Trade>& points) {
                                    [&](const Worth& w) { return w.method == point.method; });
     if (!known) worth.push_back({point.method, false, 0.0, ""});
   }
-  // The fastest point within an error is always on the front: each of its points is the answer from
-  // its own error up to that of the one before.
+  // The fastest point within an error is always on the front: each point of the front is the
+  // fastest from its own error up to that of the previous point.
   for (Worth& w : worth) {
     for (std::size_t k = 0; k < front.size(); ++k) {
       if (points[front[k]].method != w.method) continue;

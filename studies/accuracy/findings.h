@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What follows from the measured points of `study accuracy`: laws, the front, what is worth it, the
-// setting to use.
+// Results from the measured points of `study accuracy`: laws, the Pareto front, and the best
+// settings.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@
 
 namespace earthshine::studies {
 
-// Which settings are worth their time: the Pareto front of (seconds, error), down to which error
-// each method is the cheapest, and the cheapest setting for a wanted error.
+// Data for the Pareto front of (seconds, error), the errors down to which each method is the
+// cheapest, and the cheapest setting for a wanted error.
 
 struct Trade {
   std::string method;
@@ -22,53 +22,56 @@ struct Trade {
   double error = 0.0;
 };
 
-// Functions below throw base::Error (Work) for a number that is negative or not finite.
+// The functions below throw base::Error (Work) for a number that is negative or not finite.
 
-// Indices of the points that no other one beats, by rising seconds: none is at least as fast and as
-// exact, and better in one of the two. Of points alike in both the first one stands.
+// Indices of the Pareto-optimal points, by rising seconds: no other point is at least as fast and
+// as accurate, and better in one of the two. Of equal points the first one counts.
 [[nodiscard]] std::vector<std::size_t> pareto_front(const std::vector<Trade>& points);
 
-// The fastest point whose error is at most `wanted`; of equally fast ones the most exact.
+// The fastest point whose error is at most `wanted`; of equally fast ones the most accurate.
 [[nodiscard]] std::optional<std::size_t> cheapest_within(const std::vector<Trade>& points,
                                                          double wanted);
 
-// Where a method is the cheapest way. It is so at an error e if the fastest of all points with
-// error <= e is one of its own.
+// The range in which a method is the cheapest: at an error e, the fastest of all points with an
+// error <= e belongs to the method.
 struct Worth {
   std::string method;
-  bool ever = false;     // for some error it is the cheapest
-  double down_to = 0.0;  // the least error that it is the cheapest way to
-  std::string then;      // the method that is cheaper just below; "": none measured gets there
+  bool ever = false;     // it is the cheapest for some error
+  double down_to = 0.0;  // the least error for which it is the cheapest
+  std::string then;      // the method that is the cheapest just below; "": no point has a smaller
+                         // error
 };
-// One for each method, in the order in which they first appear.
+// One for each method, in the order of their first points.
 [[nodiscard]] std::vector<Worth> worth_of_methods(const std::vector<Trade>& points);
 
 struct MeasuredStep {
   AccuracyStep step;
   StepCost cost;
-  PictureError error;          // against the full truth
-  PictureError setting_error;  // against the method's own limit
+  PictureError error;          // relative to the full reference
+  PictureError setting_error;  // relative to the method's own limit
 };
 
-// A series and its law, of the setting's error. Points below the reference's resolution stay out.
+// A series and its law for the setting's error. Points below the reference's resolution are
+// excluded.
 struct SeriesLaw {
   std::string method, series;
-  std::string spent;  // what x counts: "patches", "camera samples a pixel"
+  std::string spent;  // unit of x: "patches", "camera samples a pixel"
   std::vector<ErrorAt> points;
   std::optional<PowerLaw> law;
 };
 
-// The cheapest settings measured for a wanted error, by CPU seconds.
+// The cheapest measured settings for a wanted error, by CPU seconds.
 struct Answer {
   double wanted = 0.0;
-  bool told = true;                 // the reference is fine enough to tell
-  std::optional<std::size_t> best;  // of the measured points; none: not reached
+  bool told = true;                 // whether the reference resolves this error
+  std::optional<std::size_t> best;  // index of the measured point; empty: not reached
   struct OfMethod {
     std::string method;
-    std::optional<std::size_t> point;  // its picture is that exact
-    // Its setting is: what is left is the method's own limit, which no setting takes away.
+    std::optional<std::size_t> point;  // whose picture has that error
+    // Whose setting has that error: the rest is the method's own limit, which no setting removes.
     std::optional<std::size_t> setting;
-    // Not reached by paths: CPU seconds that they would take, error falling with their root.
+    // If paths do not reach it: the CPU seconds that they would take, with an error that falls with
+    // their root.
     std::optional<double> expected_seconds;
   };
   std::vector<OfMethod> methods;
@@ -81,11 +84,11 @@ struct Findings {
   std::vector<Answer> answers;  // one for each wanted error
 };
 
-// resolution: of the reference. An error below it counts as it: no more is known.
+// resolution: of the reference. A smaller error counts as the resolution, because it is unknown.
 [[nodiscard]] Findings find_accuracy(const std::vector<MeasuredStep>& points,
                                      const std::vector<double>& wanted, double resolution);
 
-// How much of what its series varies was spent on a point, and what it is called.
+// The amount of the varied quantity at a point, and its name.
 struct Spent {
   double amount = 0.0;
   std::string what;

@@ -13,14 +13,14 @@ namespace {
 
 using raytrace::Indirect;
 
-// What is measured for a wanted error: from twenty times as much down to a little less.
+// Settings for a wanted error, as factors on it: from twenty down to a little less than one.
 constexpr double error_steps[] = {20.0, 10.0, 5.0, 3.0, 2.0, 1.4, 1.0, 0.7};
 constexpr double edge_steps[] = {8.0, 4.0, 2.0, 1.0, 0.5};  // of the edge for an error of 0.02
 constexpr int form_factor_steps[] = {16, 64, 256, 1024, 4096};
-constexpr int gather_steps[] = {8, 16, 32, 64, 128};  // it casts 8 at least
+constexpr int gather_steps[] = {8, 16, 32, 64, 128};  // 8 is the minimum
 constexpr int camera_steps[] = {4, 16, 64, 256};
 
-// 0.05 and not 0.050000000000000003.
+// Rounds: 0.05 and not 0.050000000000000003.
 double tidy(double value) { return std::stod(fmt::format("{:.3g}", value)); }
 
 class Ladder {
@@ -47,7 +47,7 @@ class Ladder {
 
   [[nodiscard]] double usual_edge_m() const { return usual_edge_m_; }
 
-  // The n-th of every series before the n+1-th of any.
+  // The n-th step of every series before the (n+1)-th of any.
   [[nodiscard]] std::vector<AccuracyStep> in_order() const {
     std::vector<std::pair<std::size_t, std::size_t>> order;
     for (const auto& [name, members] : series_) {
@@ -76,19 +76,19 @@ void add_radiosity(Ladder& ladder, const scenes::Effects& effects, const LadderO
     const double error = tidy(std::min(1.0, times * options.finest));
     if (error == before) continue;
     before = error;
-    // What does not depend on the error costs about what an error of 0.03 does.
+    // The parts that do not depend on the error cost about as much as an error of 0.03.
     ladder.add(method, series::error, how, error, 1e3 + 1.0 / (error * error)).quality.error =
         error;
   }
   if (effects.solution) {
     for (const double times : edge_steps) {
       const double edge_m = tidy(times * ladder.usual_edge_m());
-      // The number of patches goes with 1 / edge^2, but every facet is one at least.
+      // The number of patches is proportional to 1 / edge^2, but each facet has at least one.
       ladder.add(method, series::patches, how, edge_m, 1.0 + 0.5 / (times * times))
           .quality.patch_edge_m = edge_m;
     }
     for (const int rays : form_factor_steps) {
-      // A solve of few rays costs what the rest of it costs.
+      // A solve with few rays costs as much as its other parts.
       ladder.add(method, series::form_factor_rays, how, rays, rays + 500.0)
           .quality.form_factor_rays = rays;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The settings that `study accuracy` runs through: cheap and coarse ones first, for each method.
+// The settings of `study accuracy`: for each method, cheap and coarse ones first.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace earthshine::studies {
 
-// What a series varies. All else is as a scene has it that says nothing of quality.
+// The varied quantity of a series. All other settings are the defaults for the scene.
 namespace series {
 inline constexpr const char* error = "error";         // all together, by --error
 inline constexpr const char* patches = "patch_edge";  // even patches, m
@@ -25,18 +25,18 @@ inline constexpr const char* samples = "samples";
 struct AccuracyStep {
   std::string method;  // "radiosity", "direct", "distributed" or "paths"
   std::string series;
-  double setting = 0.0;  // of what is varied
+  double setting = 0.0;  // of the varied quantity
   raytrace::Indirect indirect = raytrace::Indirect::Radiosity;
-  scenes::Quality quality;  // what the scene's keys are replaced by
+  scenes::Quality quality;  // replaces the scene's keys
   int lights = 0;           // of Indirect::Distributed
-  double work = 1.0;        // what it is expected to cost, against others of its series
+  double work = 1.0;        // expected cost, relative to other steps of the series
 
   [[nodiscard]] std::string name() const;  // "radiosity error=0.05"
-  // Whether `render` would choose settings until the picture says that it is as exact.
+  // Whether `render` would adapt the settings until the stated error is reached.
   [[nodiscard]] bool steered() const {
     return quality.error && indirect == raytrace::Indirect::Radiosity;
   }
-  // The words that make `earthshine render` draw it.
+  // The `earthshine render` options that draw it.
   [[nodiscard]] std::vector<std::string> options() const;
 };
 
@@ -46,10 +46,10 @@ struct LadderOptions {
   std::vector<int> samples = {4, 16, 64, 256};
 };
 
-// In the order in which they are run: the first of every series, the second ... `effects`: of the
-// scene with all light. Series that have nothing to vary are left out: patches and form factors
-// where nothing is solved for, gather rays where there are none, distributed lights where no source
-// is wide. What else the scene says of quality stays: denoise, solver_tolerance.
+// In running order: the first of every series, the second, and so on. `effects`: of the scene with
+// all light. Omits series without effect: patches and form factors without a solution, gather rays
+// without gathering, distributed lights without a wide source. Keeps the scene's denoise and
+// solver_tolerance.
 [[nodiscard]] std::vector<AccuracyStep> accuracy_ladder(const scenes::Scene& scene,
                                                         const scenes::Effects& effects,
                                                         const LadderOptions& options);
@@ -57,9 +57,9 @@ struct LadderOptions {
 // The keys of the scene's [quality] that the ladder replaces.
 [[nodiscard]] std::vector<std::string> replaced_keys(const scenes::Quality& quality);
 
-// CPU seconds that `step` will take, from those of its series that were run: the last one's times
-// the ratio of the work; where its series has none, the least of all: it begins with its cheapest.
-// 0 where there are none at all.
+// Predicts the CPU seconds of `step` from the finished ones of its series: the last one's seconds
+// times the ratio of the work. If there are none, the least of all finished steps, since a series
+// begins with its cheapest step. 0 without any.
 struct Taken {
   AccuracyStep step;
   double cpu_seconds = 0.0;

@@ -13,13 +13,13 @@
 namespace earthshine::studies {
 namespace {
 
-// Everything in logarithms: t = ln x, y = ln error. Parameters: ln a, p, ln floor.
+// All in logarithms: t = ln x, y = ln error. Parameters: ln a, p, ln floor.
 struct LogPoint {
   double t = 0.0, y = 0.0;
 };
 using Parameters = Eigen::Vector3d;
 
-// y and its derivatives by the parameters. `used` = 2 leaves the floor out.
+// y and its derivatives by the parameters. `used` = 2: no floor.
 double model(const Parameters& at, Eigen::Index used, double t, Parameters& slope) {
   const double fall = at[0] - at[1] * t;
   if (used == 2) {
@@ -43,7 +43,7 @@ double squares(const std::vector<LogPoint>& points, const Parameters& at, Eigen:
   return sum;
 }
 
-// m^-1 r of the parameters in use; none where m is singular.
+// m^-1 r for the parameters in use; empty if m is singular.
 std::optional<Parameters> solve(const Eigen::Matrix3d& m, const Parameters& r, Eigen::Index used) {
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(m.topLeftCorner(used, used));
   if (!lu.isInvertible()) return std::nullopt;
@@ -89,12 +89,12 @@ Fit descend(const std::vector<LogPoint>& points, const Parameters& start, Eigen:
   return fit;
 }
 
-// Without a floor the model is a straight line, which one step from anywhere reaches.
+// Without a floor the model is a straight line, which Gauss-Newton reaches in one step.
 Fit fit_line(const std::vector<LogPoint>& points) {
   return descend(points, Parameters(0.0, 0.5, 0.0), 2);
 }
 
-// The floor's place is not convex: several starts below the least error.
+// The problem is not convex in the floor: tries several starts below the least error.
 Fit fit_floor(const std::vector<LogPoint>& points, const Fit& line) {
   double least = points.front().y;
   for (const LogPoint& point : points) least = std::min(least, point.y);
@@ -142,7 +142,7 @@ std::optional<PowerLaw> fit_power_law(const std::vector<ErrorAt>& points) {
   Eigen::Index used = 2;
   Fit fit = fit_line(log);
   const auto n = static_cast<double>(log.size());
-  // Points that fit a line to a millionth have no floor to speak of.
+  // Points that fit a line to 1e-6 have no significant floor.
   if (places >= 4 && fit.squares > 1e-12 * n && fit.at[1] > 0.0) {
     const Fit floored = fit_floor(log, fit);
     if (fit.squares - floored.squares > 4.0 * floored.squares / (n - 3.0) && floored.at[1] > 0.0) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// How an error falls with what is spent on it: error = a x^-p, down to a floor.
+// The decrease of an error with the amount spent: error = a x^-p, down to a floor.
 //
 //   error^2 = (a x^-p)^2 + floor^2
-// The floor is what the other settings leave; independent errors add as squares. Fitted by least
+// The floor is the error by other settings; squares of independent errors add up. Fitted by least
 // squares in the logarithm of the error (Gauss-Newton, damped after Levenberg and Marquardt). The
-// floor is in the model only where the points ask for it: with n points, where it lowers the sum of
-// squares by more than 4 times what is left of it per degree of freedom, S0 - S1 > 4 S1 / (n - 3).
-// Standard error of p: from the inverse of the normal matrix and S / (degrees of freedom).
+// model has a floor only if the points support it: with n points, if it reduces the sum of squares
+// by more than 4 times the remainder per degree of freedom, S0 - S1 > 4 S1 / (n - 3). Standard
+// error of p: from the inverse of the normal matrix and S / (degrees of freedom).
 #pragma once
 
 #include <cstddef>
@@ -16,22 +16,22 @@
 namespace earthshine::studies {
 
 struct ErrorAt {
-  double x = 0.0;  // what is spent: rays, patches, samples, lights
+  double x = 0.0;  // amount: rays, patches, samples, lights
   double error = 0.0;
 };
 
 struct PowerLaw {
   double factor = 0.0;                   // a
   double exponent = 0.0;                 // p; positive: the error falls with x
-  std::optional<double> exponent_error;  // standard error; none where no point is left over
-  double floor = 0.0;                    // 0: none was seen
+  std::optional<double> exponent_error;  // standard error; empty without degrees of freedom
+  double floor = 0.0;                    // 0: none
   std::size_t points = 0;
   [[nodiscard]] double error_at(double x) const;
 };
 
-// Points with an error of 0 are left out: they lie below what could be measured. None with fewer
-// than two different x among the others. Throws base::Error (Work) for a number that is not finite,
-// an x that is not positive or an error that is negative.
+// Ignores points with an error of 0, which are below the resolution. Empty if the others have fewer
+// than two different x. Throws base::Error (Work) for a number that is not finite, an x that is not
+// positive or an error that is negative.
 [[nodiscard]] std::optional<PowerLaw> fit_power_law(const std::vector<ErrorAt>& points);
 
 }  // namespace earthshine::studies

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pictures that those of the ladder are measured against.
+// The reference pictures of the ladder.
 #include <algorithm>
 #include <cmath>
 
@@ -61,7 +61,7 @@ NoisyPicture mean_of_batches(const std::vector<Batch>& batches,
 }
 
 std::vector<int> further_batches(int first_paths, double found, double wanted, int most) {
-  constexpr int largest = 64;  // what a kill may cost
+  constexpr int largest = 64;  // limits the loss of an interrupted run
   std::vector<int> batches;
   if (!(found > wanted) || !(wanted > 0.0)) return batches;
   const double ratio = found / wanted;

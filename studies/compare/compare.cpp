@@ -41,7 +41,7 @@ class Comparing {
 
   Comparison run() {
     (void)raytrace::earth_area(study_.scene,
-                               options_.distributed_over);  // a wrong one before the work
+                               options_.distributed_over);  // checks the area before the work
     const auto methods = compare_methods(options_.distributed_lights, options_.distributed_over);
     comparison_.wide_sources = has_wide_sources(study_);
     take_references(methods.front());
@@ -172,7 +172,7 @@ class Comparing {
   const scenes::Camera& camera_;
   const CompareOptions& options_;
   const raytrace::StageListener& listen_;
-  ReferencePair pair_, reflected_;  // of all light; without that straight from the sources
+  ReferencePair pair_, reflected_;            // all light; without light straight from the sources
   std::vector<float> mean_, mean_reflected_;  // luminance of the pairs' means
   std::vector<bool> counted_;                 // pixels of `reflected_`
   Comparison comparison_;

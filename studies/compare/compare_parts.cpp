@@ -68,7 +68,7 @@ TargetDifference target_difference(const TargetLight& light, const TargetLight& 
   }
   difference.misleads = breaks_rule(difference);
   if (light.contrast.has_value() != reference.contrast.has_value()) {
-    difference.misleads = true;  // one surround is black, the other is not
+    difference.misleads = true;  // only one surround is black
   }
   return difference;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the comparison says of each target, in words.
+// The comparison's verdict on each target in words.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ std::string contrast_text(const TargetLight& light) {
   return fmt::format("{:+.2f}", rounded == 0.0 ? 0.0 : rounded);  // never "-0.00"
 }
 
-// Three digits, without an exponent where thousands will do.
+// Three digits, without an exponent up to a million.
 std::string luminance_text(double value) {
   const bool is_large = value >= 1000.0 && value < 1e6;
   return is_large ? fmt::format("{:.0f}", 10.0 * std::round(0.1 * value))
@@ -38,7 +38,7 @@ std::string figures(const TargetDifference& found, const TargetLight& right) {
                      contrast_text(found.light), contrast_text(right));
 }
 
-// The last of those over the disc: compare_methods lists them from 2 on by rising N.
+// The last method over the disc: compare_methods lists these from 2 on by rising N.
 std::size_t most_lights(const std::vector<MethodResult>& methods) {
   std::size_t k = 2;
   while (methods[k + 1].method.indirect == raytrace::Indirect::Distributed &&
@@ -48,7 +48,7 @@ std::size_t most_lights(const std::vector<MethodResult>& methods) {
   return k;
 }
 
-// From which number of lights on the rule is kept by all.
+// The least number of lights from which on no method breaks the rule.
 int enough_lights(const std::vector<MethodResult>& methods, std::size_t most, std::size_t target) {
   int enough = methods[most].method.distributed_lights;
   for (std::size_t k = most; k >= 2 && !methods[k].targets[target]->misleads; --k) {

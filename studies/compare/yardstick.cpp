@@ -27,7 +27,7 @@ double mean_square(const std::vector<std::uint32_t>& pixels, const base::Image& 
   return sum / (n * n);
 }
 
-// The noise of both pictures, with pixels taken as independent.
+// Adds the noise of both pictures, for independent pixels.
 void add_noise(const TargetView& view, const TargetLight& light, const TargetLight& right,
                const base::Image& image, const ReferencePair& pair, TargetDifference& difference) {
   if (!(right.luminance > 0.0)) return;
@@ -58,7 +58,7 @@ bool decided(const TargetDifference& difference) {
     }
     return breaks_rule(shifted);
   };
-  // One surround black and the other not breaks the rule whatever the noise is.
+  // If only one surround is black, the rule is broken for any noise.
   if (difference.misleads && !breaks_rule(difference)) return true;
   for (const double ratios : {-2.0, 2.0}) {
     for (const double contrasts : {-2.0, 2.0}) {

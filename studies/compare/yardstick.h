@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every picture of a comparison is held against, and how sure that makes of a target.
+// The reference of a comparison, and the confidence of its verdicts.
 #pragma once
 
 #include <array>
@@ -14,30 +14,30 @@
 
 namespace earthshine::studies {
 
-// As `targets`; none: not in view. mean: of the pair, per pixel. image: with the layer "variance".
-// The noise of a target's luminance: of the mean over its pixels, with pixels as independent; the
-// picture's from its variance layer, the reference's from the difference of the two. Neighbours
-// that share gather rays are not independent, so that the picture's own part is a lower bound.
+// As `targets`; empty: not in view. mean: of the pair, per pixel. image: with the layer "variance".
+// The noise of a target's luminance is that of the mean over its pixels, assumed independent: in
+// the picture from its variance layer, in the reference from the difference of the pair. Neighbours
+// that share gather rays are correlated, so that the picture's part is a lower bound.
 [[nodiscard]] std::vector<std::optional<TargetDifference>> target_differences(
     const base::Image& image, const std::vector<TargetView>& targets, const ReferencePair& pair,
     const std::vector<float>& mean);
 
-// Whether two standard deviations of noise, of ratio and contrast each, leave `misleads` as it is.
+// Whether `misleads` is the same at two standard deviations of ratio and contrast.
 [[nodiscard]] bool decided(const TargetDifference& difference);
 
-// How far one picture's luminance is off another's, in bands of the ratio.
+// Bands of the ratio of two pictures' luminances.
 
 using Colour = std::array<std::uint8_t, 3>;  // sRGB
 
 struct DifferenceBand {
-  double above = 0.0;  // L / L_ref above this, up to that of the band before; the last: from 0
+  double above = 0.0;  // L / L_ref above this, up to the band before; the last: from 0
   Colour colour = {};
   std::string_view label;
 };
 
-// From far too bright to far too dark. Equal steps of lightness on both sides of white, and hues
-// that people with a colour deficiency tell apart (RdBu of colorbrewer2.org
-// in 11 classes, without its two palest).
+// From far too bright to far too dark. Equal steps of lightness on both sides of white, in hues
+// that are distinct with colour vision deficiencies (RdBu of colorbrewer2.org in 11 classes,
+// without its two palest).
 inline constexpr std::array<DifferenceBand, 9> difference_bands = {
     {{4.0, {103, 0, 31}, "over ×4"},
      {2.0, {178, 24, 43}, "×2 to ×4"},
@@ -49,11 +49,11 @@ inline constexpr std::array<DifferenceBand, 9> difference_bands = {
      {1.0 / 4.0, {33, 102, 172}, "÷2 to ÷4"},
      {0.0, {5, 48, 97}, "under ÷4"}}};
 
-// Pixels that show no object, which are not compared.
+// Pixels without an object, which are not compared.
 inline constexpr Colour difference_sky = {160, 160, 160};
 
-// sRGB, row by row as the pictures, which have the same size; each pixel in its band's colour,
-// black in both as no difference.
+// sRGB, row by row, for pictures of equal size. Each pixel has its band's colour; black in both
+// counts as equal.
 [[nodiscard]] std::vector<std::uint8_t> difference_picture(const base::Image& image,
                                                            const base::Image& reference,
                                                            const ObjectMap& map);

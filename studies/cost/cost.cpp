@@ -16,15 +16,16 @@
 namespace earthshine::studies {
 namespace {
 
-// Pictures of a wanted error are begun with so many pixels at most, and left after so much. Those
-// of the whole cost less each, as fewer lie at edges and more show the same: on the payload bay and
-// the still life 4 times the pixels cost 1.7 to 2.6 times as much, part of it whatever the pixels.
+// Pictures with a wanted error are started with at most this many pixels and stopped after this
+// time. Pixels of the whole picture cost less each, because fewer are at edges and more are
+// similar: on the payload bay and the still life 4 times the pixels cost 1.7 to 2.6 times as much;
+// part of the cost is independent of the pixels.
 constexpr double begun_pixels = 128.0 * 128.0, begun_cpu_s = 2.0;
 constexpr double power_of_pixels = 0.48;
-// Seconds grow with error over wanted error by that power, if even the first look was cut short:
-// measured on the payload bay by its four lights, 512 x 512, where it is 0.96 to 1.17.
+// Exponent of seconds over the ratio of errors if even the initial sampling was stopped: measured
+// on the payload bay with its four lights, 512 x 512, where it is 0.96 to 1.17.
 constexpr double power_of_a_cut_look = 1.05;
-// Others are drawn with the fewer pixels; with more, too, if those took little time.
+// Other pictures have the fewer pixels, and are repeated with more if that was fast.
 constexpr double least_pixels = 1024.0, most_pixels = 4096.0, enough_cpu_s = 0.5;
 constexpr int pilot_rays = 64;  // per patch
 constexpr double few_patches = 4096.0;
@@ -36,7 +37,7 @@ class Stopwatch {
     return std::chrono::duration<double>(Clock::now() - start_).count();
   }
   [[nodiscard]] double cpu_seconds() const { return base::cpu_seconds() - cpu_; }
-  // What it takes when the machine does nothing else.
+  // Seconds on an idle machine.
   [[nodiscard]] double seconds_alone() const { return cpu_seconds() / base::available_threads(); }
 
  private:
@@ -45,7 +46,7 @@ class Stopwatch {
   double cpu_ = base::cpu_seconds();
 };
 
-// The coarse solve, scaled; `coarse` receives its solution for the pictures.
+// Solves coarsely and scales the report; `coarse` receives the solution for the pictures.
 radiosity::SolveReport expect_solve(const PilotCall& call, radiosity::Solution& coarse) {
   radiosity::SolveOptions cheap = call.solver;
   cheap.form_factor_rays = std::min(pilot_rays, cheap.form_factor_rays);
@@ -105,7 +106,7 @@ class PictureDrawer {
   const radiosity::Solution& coarse_;
 };
 
-// In seconds of a machine that does nothing else.
+// Converts seconds to an idle machine.
 raytrace::Frame timed(const Stopwatch& watch, raytrace::Frame frame) {
   const double alone = watch.seconds_alone() / std::max(1e-9, watch.seconds());
   frame.report.seconds *= alone;
@@ -156,7 +157,7 @@ raytrace::RenderReport expect_picture(const PictureDrawer& drawer, const scenes:
   return report;
 }
 
-// The bill, shared out among the effects.
+// Division of the bill among the effects.
 
 double solve_seconds(const radiosity::SolveReport& report) {
   double sum = 0.0;
@@ -174,7 +175,7 @@ double samples_growth(const raytrace::RenderReport& report, double wanted) {
 
 Pilot expect_costs(const PilotCall& call, const std::vector<const scenes::Camera*>& cameras,
                    const std::vector<raytrace::RenderOptions>& pictures) {
-  // It ends by the clock, which ranks read at different times: each has a pilot of its own.
+  // It ends by the clock, which differs between ranks: each has its own pilot.
   const base::RanksInForce alone(nullptr);
   const Stopwatch watch;
   Pilot pilot;
@@ -208,13 +209,13 @@ std::vector<EffectCost> effect_costs(const Bill& bill, const scenes::Effects& ef
   }
   for (const raytrace::RenderReport& report : bill.pictures) {
     const raytrace::RayCounts& rays = report.rays;
-    // Without light between surfaces the hemisphere is searched for the Earth alone.
+    // Without interreflection the hemisphere is searched for the Earth only.
     EffectCost& gathers = effects.interreflection
                               ? between
                               : sources[static_cast<std::size_t>(scenes::LightKind::Earth)];
     gathers.rays += static_cast<double>(rays.gather);
     gathers.seconds += report.gather_seconds;
-    // Paths have no gather stage of their own: all their rays share the seconds.
+    // Path tracing has no separate gather stage: all rays share the seconds.
     const double apart = report.gather_seconds > 0.0 ? static_cast<double>(rays.gather) : 0.0;
     const double shaded = std::max(1.0, static_cast<double>(rays.total()) - apart);
     const double per_ray = std::max(0.0, report.seconds - report.gather_seconds) / shaded;
@@ -244,20 +245,20 @@ double total_seconds(const Bill& bill) {
 RanksCost ranks_cost(const Bill& bill, std::size_t columns, double pixels) {
   RanksCost cost;
   for (const auto& [name, seconds] : bill.solve.seconds) {
-    // Cutting into patches is each rank's own; the looks of refinement are shared.
+    // Each rank divides surfaces into patches; the samples of refinement are shared.
     const bool alone = name == "ledger" || (name == "patches" && bill.solve.refinement_rays == 0);
     (alone ? cost.alone_s : cost.shared_s) += seconds;
   }
   for (const raytrace::RenderReport& report : bill.pictures) cost.shared_s += report.seconds;
-  // Of a patch: what a row found; in each sweep of the balance what is multiplied, and its sums in
-  // 16 bands, at the end its row; in each iteration two products; four floats of the solution. What
-  // is multiplied goes in fours of columns.
+  // Bytes per patch: the result of a row; in each sweep of the balance the factors and their sums
+  // in 16 bands. Then the row; two products in each iteration; four floats of the solution.
+  // Products are packed in fours of columns.
   const auto patches = static_cast<double>(bill.solve.patches);
   const double sweeps = bill.solve.balance.sweeps, fours = std::ceil(double(columns) / 4.0);
   cost.bytes_to_all = patches * (64.0 + 32.0 * sweeps + 8.0 + 16.0 * double(columns) +
                                  64.0 * fours * double(bill.solve.iterations)) +
                       24.0 * pixels;
-  // The entries come once from whoever cast them; where hits are filled in, once more, with their
+  // Each entry comes once from the rank that cast it; filled-in hits come once more, with their
   // rows.
   const double filling = bill.solve.balance.filled > 0 ? 12.0 : 0.0;
   cost.bytes_dealt =

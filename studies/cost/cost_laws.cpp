@@ -10,17 +10,17 @@
 namespace earthshine::studies {
 namespace {
 
-constexpr double least_power = 0.25, most_power = 1.0;  // of patches, by which errors fall
+constexpr double least_power = 0.25, most_power = 1.0;  // exponents of the error in patches
 
 std::uint64_t times(std::uint64_t count, double by) {
   return static_cast<std::uint64_t>(std::llround(double(count) * by));
 }
 
-// What the rounds that are left may make of the last one's patches.
+// Limit of the remaining rounds on the number of patches.
 double most_by_rounds(const std::vector<radiosity::RefineRound>& rounds) {
   constexpr std::size_t looked_at = 4;
   if (rounds.size() <= looked_at) return std::numeric_limits<double>::infinity();
-  double growth = 1.0;  // the last may have been held back by the pilot's own budget
+  double growth = 1.0;  // the pilot's budget may have limited the last round
   for (std::size_t k = rounds.size() - looked_at; k < rounds.size(); ++k) {
     growth = std::max(growth, double(rounds[k].patches) / double(rounds[k - 1].patches));
   }
@@ -55,7 +55,7 @@ radiosity::SolveReport scaled(const radiosity::SolveReport& small, const SolveSc
   report.form_factor_rays = times(small.form_factor_rays, more * scale.rays);
   report.refinement_rays = times(small.refinement_rays, rounds);
   report.nonzeros = static_cast<std::size_t>(entries);
-  report.iterations = small.iterations;  // as reflectances have it, not patches
+  report.iterations = small.iterations;  // depends on reflectances, not on patches
   for (const auto& [name, seconds] : small.seconds) {
     double by = more;
     if (name == "form factors") by = more * scale.rays;
@@ -76,7 +76,7 @@ raytrace::RenderReport as_part_of(double whole_pixels, const SmallPicture& coars
                                   const SmallPicture& fine) {
   const double wide = 1.0 / std::sqrt(whole_pixels), less = 1.0 / std::sqrt(coarse.pixels),
                more = 1.0 / std::sqrt(fine.pixels);
-  // The whole's cost over the fine one's, from what both cost.
+  // Cost of the whole over the finer one's, from the costs of both.
   const auto change = [&](double of_coarse, double of_fine) {
     const double first = of_coarse / coarse.pixels, second = of_fine / fine.pixels;
     if (first <= second || less <= more) return 1.0;
@@ -97,7 +97,7 @@ raytrace::RenderReport as_part_of(double whole_pixels, const SmallPicture& coars
   if (fine.report.gather_seconds > 0.0) {
     report.gather_seconds *= change(coarse.report.gather_seconds, fine.report.gather_seconds);
   }
-  // Gather and all else by laws of their own, so that neither becomes more than the whole.
+  // Separate laws for gathering and the rest, so that neither exceeds the whole.
   const double others = fine.report.seconds - fine.report.gather_seconds;
   if (others > 0.0) {
     const double of_coarse = coarse.report.seconds - coarse.report.gather_seconds;

@@ -22,32 +22,32 @@ constexpr double open_mpi_bytes = 12e6;  // its libraries and buffers
 constexpr double vertex_bytes = 24.0 + 12.0;          // the scene's, the ray structure's copy
 constexpr double triangle_bytes = 24.0 + 12.0 + 4.0;  // the scene's, the copy, of_triangle
 constexpr double hierarchy_bytes = 150.0;             // per triangle
-// Where there are patches: per facet, of which there are no more than triangles or patches; per
+// With patches: per facet, of which there are at most as many as triangles or patches; per
 // triangle, as a target of rays; per triangle of a cluster.
 constexpr double facet_bytes = sizeof(radiosity::Facet), target_bytes = 32.0, member_bytes = 40.0;
 
 constexpr double patch_bytes = 8.0 + 4.0 + sizeof(radiosity::Cell) + 1.0 + 8.0;
-// Per patch, of the matrix's rows and columns: where a row starts, scales, shares of sky and black
-// backs, what is kept, what is open; per part of the sky its light. While they are cast also what
-// each row found.
+// Per patch, for the matrix's rows and columns: start of a row, scales, shares of sky and black
+// backs, absorbed share, open share; light per part of the sky. During casting also the result of
+// each row.
 constexpr double row_bytes = 80.0, sky_bytes = 24.0, cast_bytes = 50.0;
-// While they are balanced: what all ranks have, and of its own patches the vectors of Newton's
-// step; sums of columns in 16 bands, of which each rank has its own, has sent as much and got its
-// columns'.
+// During balancing: data on all ranks; for a rank's own patches the vectors of Newton's step; and
+// sums of columns in 16 bands. A rank holds its own bands, the ones it has sent, and the received
+// ones.
 constexpr double balance_bytes = 48.0, newton_bytes = 90.0, bands_bytes = 128.0;
 constexpr double counter_bytes = 4.125;  // per patch and thread
 constexpr double entry_bytes = 8.0;      // column and hits
-// Bands of rows are joined to the matrix sixteenth by sixteenth. Ranks send them to one another,
-// and who was free more often has cast more of them than its part.
+// Bands of rows are joined to the matrix in sixteenths. Ranks send them to each other; a fast rank
+// has cast more bands than its part.
 constexpr double joined_copies = 1.0 + 1.0 / 16.0, sent_copies = 1.5;
-// Doubles per patch and column, of own rows: while the linear system is solved direct light and
-// nine vectors (linear_solve.h), and three of reflectance a row; after it exitance, radiosity and
-// what falls on it, which make room for the four floats that are kept, with every rank.
+// Doubles per patch and column, of own rows. During the linear solve: direct light and nine vectors
+// (linear_solve.h), and three of reflectance a row. After it: exitance, radiosity and illuminance,
+// which the four floats of the solution on every rank replace.
 constexpr double light_vectors = 1.0, iteration_vectors = 9.0, found_vectors = 4.0;
 constexpr double reflectance_bytes = 24.0;
-// While the solution's error is stated: two parts of the light, the solution, all as floats, and
-// what rays read of it. Bytes: of the first rank what samples found and what is known of patches,
-// of each the list of samples and what is under way; of a linear system of six columns.
+// During the statement of the solution's error: two parts of the light and the solution as floats,
+// and the table that rays read. Bytes: on the root rank the samples and the data of patches, on
+// each rank the list of samples and those in progress; and a linear system of six columns.
 constexpr double error_floats = 3.0, found_bytes = 190.0, samples_bytes = 200.0;
 constexpr double error_columns = 6.0;
 constexpr double solution_bytes = 4.0 * sizeof(float);  // per patch and column
@@ -70,8 +70,8 @@ double solver_bytes(const MemoryCase& m, double columns) {
          reflectance_bytes / m.ranks;
 }
 
-// Bytes per patch of the error over the surfaces, beside the matrix: light as samples and rays read
-// it, and then the equation of the error.
+// Bytes per patch of the error over the surfaces, beside the matrix: light for samples and rays,
+// then the equation of the error.
 double stating_bytes(const MemoryCase& m, double columns) {
   const double tables = (columns / 3.0 + 2.0) * texel_bytes;
   const double more = m.first_rank ? found_bytes + row_bytes : 3.0 * sizeof(double);
@@ -102,8 +102,7 @@ MemoryNeed memory_needed(const MemoryCase& m) {
                                              std::min(patches, triangles) * facet_bytes +
                                              triangles * (target_bytes + member)});
   }
-  // One after the other: the matrix is cast and balanced, the system solved, the solution's error
-  // stated, the picture drawn.
+  // In sequence: casting and balancing of the matrix, linear solve, error of the solution, picture.
   MemoryNeed casting = standing, balancing = standing, solving = standing, stating = standing;
   if (m.solves) {
     const double entries = patches * m.row_entries * entry_bytes / m.ranks;
@@ -184,7 +183,7 @@ void add_picture(MemoryCase& m, const scenes::LightGroups& groups, const scenes:
   m.layers = options.per_light ? std::max<std::size_t>(1, groups.count()) : 1;
   m.channels = 3 + (options.per_light ? 3 * groups.count() : 0);
   for (const std::string& aov : options.aovs) {
-    // Of the others none has more than a colour's.
+    // other AOVs have at most three channels
     m.channels += aov.starts_with("crypto_") ? raytrace::cryptomatte_channel_count : 3;
   }
   const auto is_part = [](const std::string& aov) {
@@ -206,7 +205,7 @@ void expect_rows(MemoryCase& m, const scenes::Scene& scene, const scenes::RayQue
   const radiosity::ExpectedRows rows =
       radiosity::expected_rows(scene, query, m.patches, options.form_factor_rays);
   m.row_entries = rows.entries;
-  // Refinement leaves patches small enough to be missed wherever light varies.
+  // Refinement leaves patches that are small enough to get no hits, wherever light varies.
   m.copies_matrix = options.refine.on || rows.meets_backs ||
                     radiosity::expected_unreached(scene, m.patches, options.form_factor_rays) > 0.5;
 }

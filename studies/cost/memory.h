@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory that a run will take, by part, before its work starts; with ranks, each of them.
+// Memory of a run, by part, predicted before its work starts; with ranks, for each of them.
 //
-// Counted are the arrays whose size grows with the scene, the patches or the picture, with what the
-// stages hold beside them while they work. Constants are bytes, named after what they pay for;
-// those that are no sizes of types were measured (docs/validation.md, "Memory").
+// Includes the arrays whose size grows with the scene, the patches or the picture, and the
+// temporary data of each stage. Constants are bytes; those that are no sizes of types were measured
+// (docs/validation.md, "Memory").
 #pragma once
 
 #include <cstddef>
@@ -18,31 +18,31 @@
 
 namespace earthshine::studies {
 
-// Per pixel of a picture beside its channels: what the renderer keeps until the picture is whole
+// Per pixel of a picture beside its channels: the renderer's data until the picture is complete
 // (raytrace/shade/pixel_sums.h, gather_field.h).
 struct PixelRecordBytes {
   double sums = 64.0;              // samples, moments of the luminance, wanted samples
   double sums_per_entry = 12.0;    // radiance of an image layer or part
-  double gather_point = 700.0;     // with a stray now and then: place, halves,
-                                   // its details, fields of noise meanwhile
-  double gather_per_layer = 30.0;  // of diffuse light and of lobes, as shared
-  double cast_per_layer = 55.0;    // of three kinds, as cast, where they are cast round by round
+  double gather_point = 700.0;     // with some off-grid points: position, halves, details,
+                                   // temporary fields of noise
+  double gather_per_layer = 30.0;  // denoised diffuse and lobe light
+  double cast_per_layer = 55.0;    // sums of three kinds, if cast in rounds
 };
 inline constexpr PixelRecordBytes pixel_record_bytes;
 
-// The sizes that decide.
+// The quantities that determine the memory.
 struct MemoryCase {
   std::size_t vertices = 0, triangles = 0;
   std::size_t texture_bytes = 0;
   std::size_t patches = 0;
-  bool refined = false;        // cut unevenly
+  bool refined = false;        // uneven patches
   double row_entries = 0.0;    // form factors of a mean row
-  bool copies_matrix = false;  // some patch no ray reaches borrows: the matrix is there twice
+  bool copies_matrix = false;  // a patch without hits borrows its row: the matrix exists twice
   std::size_t columns = 0;     // 3 * light groups
-  std::size_t sky_parts = 0;   // whose light form-factor rays bring
-  bool solves = false;         // the matrix is cast; false with columns: the solution is read
+  std::size_t sky_parts = 0;   // whose light form-factor rays carry
+  bool solves = false;         // casts the matrix; false with columns: reads the solution
   int threads = 1;
-  int ranks = 1;              // that divide the entries of the matrix among them
+  int ranks = 1;              // that divide the entries of the matrix
   bool has_mpi = false;       // earthshine-mpi, by mpirun
   bool first_rank = true;     // which iterates for all (radiosity/linear_solve.h)
   bool states_error = false;  // of the solution, over all surfaces (raytrace/surfaces)
@@ -59,19 +59,19 @@ struct MemoryPart {
   double bytes = 0.0;
 };
 
-// The parts that are there together when most is.
+// The parts that exist at the time of the largest total.
 struct MemoryNeed {
   std::vector<MemoryPart> parts;
   [[nodiscard]] double total() const;
 };
 [[nodiscard]] MemoryNeed memory_needed(const MemoryCase& sizes);
 
-// What to lower, for the largest part of it.
+// The setting to lower, for the largest part.
 [[nodiscard]] std::string memory_remedy(const MemoryNeed& need);
 
-// The case of a scene. patches: if they are known; else the most there can be, for which its meshes
-// are gone through: refinement to an error may end with far fewer. row_entries is the most there
-// can be, one for each ray or patch, and copies_matrix is true, until expect_rows() looks.
+// The case of a scene. patches: if known; otherwise the largest possible number, from the meshes.
+// Refinement to an error may end with far fewer. Until expect_rows(), row_entries is the largest
+// possible number, one for each ray or patch, and copies_matrix is true.
 [[nodiscard]] MemoryCase memory_case(const scenes::Scene& scene, const scenes::LightGroups& groups,
                                      const scenes::Effects& effects,
                                      const radiosity::SolveOptions& options,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The settings' part of a light basis: what they may name; lamps that one names get a group of
-// their own; what is off in all of them goes.
+// LightBasis' checks of settings, and its lamp groups: lamps that a setting names get their own
+// group; lamps that are off in all settings are removed.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 using scenes::no_group;
 
-// Whether the sky or one of its parts may be called so: "sun", "earth-12".
+// Whether the name belongs to the sky or one of its parts: "sun", "earth-12".
 bool is_sky_name(const std::string& name) {
   for (const std::string sky : {"sun", "earth", "ambient"}) {
     if (name == sky) return true;
@@ -28,8 +28,8 @@ bool is_sky_name(const std::string& name) {
   return false;
 }
 
-// What is not dimmed together may not share a group: the name of a lamp that was split off may be
-// that of others' group, and either that of a part of the sky.
+// Renames groups that lights with different factors would share: a split lamp may have the name of
+// another group, or either the name of a part of the sky.
 void set_apart(scenes::Scene& scene, const std::vector<scenes::Lamp*>& split) {
   std::set<std::string> taken;
   const auto free_name = [&taken](const std::string& name, const char* suffix) {

@@ -17,15 +17,17 @@ using scenes::no_group;
 
 constexpr double same_direction = 1e-9;  // rad
 constexpr int cell_side = 12;            // directions across a cell for its mean radiance
-constexpr double no_sun = 1e-12;         // factor of a Sun that is off while the Earth shines by it
-// What a smooth radiance may reach between two of them over what it reaches there: 1 / 12^2 of a
-// parabola's range over the cell, and a half more for what is none.
+constexpr double no_sun = 1e-12;         // factor of a Sun that is off while the Earth reflects its
+                                         // light
+// Bound of the range of a smooth radiance between two of these directions over its range on them:
+// 1 / 12^2 of a parabola's range over the cell, and half as much more for other functions.
 constexpr double between_directions = 1.01;
 
 bool same(const Vec3& a, const Vec3& b) { return glm::length(a - b) < same_direction; }
 
-// The widest disc of the Earth, if it stands still and is nearly of one size: along a trajectory
-// the height changes by kilometres. Cells at the rim of a narrower one are dark beyond its limb.
+// The widest disc of the Earth, if its direction is fixed and its size nearly so: along a
+// trajectory the height changes by kilometres. Rim cells of a narrower disc are dark beyond its
+// limb.
 const scenes::Earth* same_disc(const std::vector<SkyPlace>& places) {
   constexpr double nearly_one_size_deg = 1.0;
   const scenes::Earth *widest = nullptr, *narrowest = nullptr;
@@ -43,7 +45,7 @@ const scenes::Earth* same_disc(const std::vector<SkyPlace>& places) {
   return alike ? widest : nullptr;
 }
 
-// A scene without surfaces: what the functions of the sky look at.
+// A scene without surfaces, for the functions of the sky.
 scenes::Scene bare(const SkyPlace& place) {
   scenes::Scene scene;
   scene.sun = place.sun;
@@ -51,7 +53,7 @@ scenes::Scene bare(const SkyPlace& place) {
   return scene;
 }
 
-// A direction beside the Earth's disc moved to its limb.
+// Moves a direction outside the Earth's disc to its limb.
 Vec3 onto_disc(const scenes::Earth& earth, const Vec3& direction) {
   const double h = base::radians(earth.half_angle_deg) * (1.0 - 1e-9);
   const double cosine = glm::dot(direction, earth.direction);
@@ -60,7 +62,7 @@ Vec3 onto_disc(const scenes::Earth& earth, const Vec3& direction) {
   return std::cos(h) * earth.direction + std::sin(h) * glm::normalize(across);
 }
 
-// Mean illuminance that the scene's lamps could give: their flux over all surfaces.
+// Mean illuminance from the scene's lamps: their flux over all surfaces.
 double lamp_level_lx(const scenes::Scene& scene) {
   double flux = 0.0, area = 0.0;
   double distant_lx = 0.0;
@@ -145,7 +147,7 @@ scenes::Scene LightBasis::scene_at(std::size_t place, std::size_t setting) const
   const Rgb sun = glm::max(sky_factor(settings_[setting], "sun"), Rgb(no_sun));
   const Rgb earth = sky_factor(settings_[setting], "earth");
   if (scene.sun) scene.sun->illuminance_lx *= sun;
-  // The Earth shines by the Sun: what the Sun's factor takes from it its albedo gives back.
+  // The Earth reflects the Sun's light: its albedo cancels the Sun's factor.
   if (scene.earth) {
     scene.earth->albedo *= earth / sun;
     scene.earth->radiance *= earth;
@@ -244,7 +246,7 @@ void LightBasis::weigh_earth(const SkyPlace& place, const Rgb& factor,
       for (const Rgb& value : seen) {
         squares += std::pow(base::luminance(value) - base::luminance(mean), 2);
       }
-      // The extremes stand at edges and at the limb.
+      // The extremes are at edges and at the limb.
       const auto look = [&](const Vec3& direction) {
         const Rgb value = factor * radiance(direction) / earth_unit_;
         largest = std::max(largest, std::abs(base::luminance(value) - base::luminance(mean)));

@@ -13,7 +13,7 @@ namespace earthshine::studies {
 
 namespace {
 
-// Of each target's points: their number is most_source_points at most.
+// of each target's points, most_source_points at most
 constexpr int rays_per_point = 8;
 
 std::vector<LightShare> shares_of(const LightBasis& basis, const BasisView::Target& target,
@@ -65,7 +65,7 @@ BasisView make_basis_view(const LightBasis& basis, const scenes::RayQuery& query
 
 namespace {
 
-// Sources and their light; the outcome has the sights.
+// Adds the sources and their light to the outcome, which has the sights.
 void find_sources(const LightBasis& basis, const scenes::RayQuery& query, const BasisView& view,
                   const SkyPlace& sky, const GroupWeights& weights, Outcome& outcome) {
   outcome.sun_share = sun_share_of(sky);
@@ -83,7 +83,7 @@ void find_sources(const LightBasis& basis, const scenes::RayQuery& query, const 
   }
 }
 
-// Fills in the reasons of those targets.
+// Finds the reasons for those targets.
 void explain(const LightBasis& basis, const BasisView& view, const SightPlan& plan,
              const base::Image& radiance, const ConditionAt& at,
              const std::optional<degrade::Setup>& cctv, const ConditionOptions& options,
@@ -154,7 +154,8 @@ std::vector<std::size_t> targets_to_explain(const Outcome& outcome,
   return targets;
 }
 
-// For each condition the first with the same weights, so with the same picture: in eclipse many are.
+// For each condition, the first one with the same weights and hence the same picture; frequent in
+// eclipse.
 std::vector<std::size_t> first_with_same(const std::vector<GroupWeights>& weights) {
   std::vector<std::size_t> first(weights.size());
   for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -185,7 +186,7 @@ std::vector<Outcome> judge_conditions(const LightBasis& basis, const scenes::Ray
     weights.push_back(basis.weights(at.place, at.setting, options.lamps));
   }
   const std::vector<std::size_t> same = first_with_same(weights);
-  std::vector<base::Image> pictures(conditions.size());  // of the first of the same
+  std::vector<base::Image> pictures(conditions.size());  // only for the first of equal conditions
   for_each([&](std::size_t k) {
     if (same[k] != k) return;
     pictures[k] = weighted_sum(view.layers, basis.groups().names, weights[k]);
@@ -198,7 +199,7 @@ std::vector<Outcome> judge_conditions(const LightBasis& basis, const scenes::Ray
     find_sources(basis, query, view, basis.places()[conditions[k].place], weights[k], outcomes[k]);
   });
   std::vector<std::vector<std::size_t>> to_explain(conditions.size());
-  std::vector<std::optional<std::size_t>> run(view.targets.size());  // where it began
+  std::vector<std::optional<std::size_t>> run(view.targets.size());  // first condition of the run
   for (std::size_t k = 0; k < conditions.size(); ++k) {
     if (k > 0 && conditions[k].setting != conditions[k - 1].setting) run.assign(run.size(), {});
     for (const std::size_t t : targets_to_explain(outcomes[k], options)) {

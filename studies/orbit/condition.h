@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one camera makes of its targets in one condition: a place in the orbit and a lamp setting,
-// as a weighted sum of the layers of one picture.
+// A camera's view of its targets in one condition, that is, an orbit position with a lamp setting:
+// a weighted sum of the layers of one picture.
 #pragma once
 
 #include <cstddef>
@@ -19,43 +19,44 @@
 
 namespace earthshine::studies {
 
-// Of a camera, whatever the condition.
+// Data of a camera for all conditions.
 struct BasisView {
   const scenes::Camera* camera = nullptr;
-  base::Image layers;  // of the basis' scene, a layer per light group, with the layer "object"
+  base::Image layers;  // of the basis' scene: a layer per light group, and the layer "object"
   SightPlan plan;
-  // Of each target: points of its seen surface, its mean light by group over the pixels that it is
-  // measured over, and what each lamp of the scene and each emitting material does to it.
+  // Of each target: points of its visible surface, its mean light by group over the measured
+  // pixels, and the reach of each lamp of the scene and of each emitting material.
   struct Target {
     std::vector<SeenPoint> points;
     std::vector<Rgb> by_group;
     std::vector<std::optional<Reach>> lamps, emitters;
-    std::optional<EarthBlockers> earth;     // where the Earth stands still over several places
-    std::optional<LastBounce> last_bounce;  // of the points; none without a solution
+    std::optional<EarthBlockers> earth;     // if the Earth has the same direction at several places
+    std::optional<LastBounce> last_bounce;  // at the points; empty without a solution
   };
   std::vector<Target> targets;
   std::vector<bool> straight_emitters;  // per material: radiosity::emitter_is_explicit
 };
-// layers: as raytrace::render gives them for basis.scene() with per_light and the layer "object".
-// query: of the scene, whose geometry the basis does not change. solution: of the basis' scene;
-// null: TargetOutcome::light_from stays empty.
+// layers: from raytrace::render for basis.scene() with per_light and the layer "object". query: of
+// the scene, whose geometry the basis shares. solution: of the basis' scene; null:
+// TargetOutcome::light_from stays empty.
 [[nodiscard]] BasisView make_basis_view(const LightBasis& basis, const scenes::RayQuery& query,
                                         const scenes::Camera& camera, base::Image layers,
                                         const radiosity::Solution* solution = nullptr);
 
 struct TargetOutcome {
   std::vector<SourceOnTarget> sources;  // "sun", "earth", lamps and emitters by light group
-  std::vector<LightShare> light_from;   // by source and by last bounce, of its luminance
-  std::optional<double> lit_fraction;   // by any source that is on; none out of view
-  WhyNot why;                           // empty unless asked for
-  std::optional<std::size_t> why_of;    // of judge_conditions: whose reasons these are; none: own
+  std::vector<LightShare> light_from;   // its luminance by source and last bounce
+  std::optional<double> lit_fraction;   // by all sources that are on; empty out of view
+  WhyNot why;                           // empty unless requested
+  std::optional<std::size_t> why_of;    // of judge_conditions: the condition with the same reasons;
+                                        // empty: own reasons
   std::optional<BasisError> basis_error;
 };
 
 struct Outcome {
   CameraSight sight;
-  std::vector<TargetOutcome> targets;  // as sight.targets
-  double sun_share = 0.0;              // of the Sun's disc, that the Earth leaves free
+  std::vector<TargetOutcome> targets;  // in the order of sight.targets
+  double sun_share = 0.0;              // unoccluded share of the Sun's disc
 };
 
 struct ConditionAt {
@@ -63,19 +64,22 @@ struct ConditionAt {
 };
 
 struct ConditionOptions {
-  double lamps = 1.0;  // times all lamps of the setting
-  // For which targets TargetOutcome::why is filled: each costs about as much as ten conditions.
+  double lamps = 1.0;  // factor on all lamps of the setting
+  // The targets with TargetOutcome::why; each costs about as much as ten conditions.
   enum class Explain { None, Unseen, NotIdentified } explain = Explain::NotIdentified;
   WhyNotOptions why;
-  // Of each target, what measure_sight is given in that condition; none: pictures are exact.
+  // Per target, the `deviation` argument of measure_sight in that condition; empty: pictures are
+  // exact.
   std::function<std::vector<double>(const ConditionAt&)> deviation = {};
-  std::function<void()> before_each = {};  // condition, on many threads; what it throws ends all
+  std::function<void()> before_each = {};  // called per condition, by many threads; an exception
+                                           // ends the call
 };
 
-// Of conditions in their order. Reasons, which cost most, are worked out once per run of like ones:
-// of one setting, verdict and iris (a quarter of a stop), the same sources off for the same causes,
-// probabilities within 0.05, luminance of target and surround within a tenth, share in direct light
-// within 0.05 of those at the run's beginning. Its other conditions say whose theirs are.
+// Evaluates conditions in order. Reasons, which cost most, are found once per run of similar
+// conditions; the other conditions refer to the first one. Similar conditions have the same
+// setting, verdict and iris (within a quarter of a stop), and the same sources off for the same
+// causes. Their probabilities and shares of direct light are within 0.05 of the first condition's,
+// and the luminances of target and surround within a tenth.
 [[nodiscard]] std::vector<Outcome> judge_conditions(const LightBasis& basis,
                                                     const scenes::RayQuery& query,
                                                     const BasisView& view,

@@ -15,7 +15,7 @@ namespace {
 
 using Value = std::optional<double> ConditionNoise::*;
 
-// Numbers of those that have it, the least first.
+// Indices of the elements that have the value, in ascending order of the value.
 std::vector<std::size_t> ranked(std::span<const ConditionNoise> noise, Value value) {
   std::vector<std::size_t> order;
   for (std::size_t k = 0; k < noise.size(); ++k) {
@@ -36,7 +36,7 @@ std::string_view word_of(FinishedBy finished) {
 
 namespace {
 
-// "" where all conditions are as exact as asked.
+// "" if all conditions have the wanted error.
 std::string text_of_finished(std::span<const ConditionNoise> noise,
                              std::span<const std::string> names) {
   std::size_t by_verdicts = 0, open = 0, first_open = 0;

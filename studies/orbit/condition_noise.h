@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The noise of the pictures that a study judges: relative where there is light, in cd/m^2 always.
+// The noise of the pictures in a study: in cd/m^2, and relative to the light if there is any.
 #pragma once
 
 #include <optional>
@@ -9,27 +9,27 @@
 
 namespace earthshine::studies {
 
-// What finished a condition's picture.
+// The reason why a condition's picture is finished.
 enum class FinishedBy {
-  Error,     // its error is as asked
-  Verdicts,  // each target's verdict is the same at both ends of its contrast's 95 % interval
+  Error,     // its error is as wanted
+  Verdicts,  // each target has the same verdict at both ends of its contrast's 95 % interval
   Nothing    // neither: its error is larger, and a verdict may change
 };
 // "error", "verdicts", "nothing".
 [[nodiscard]] std::string_view word_of(FinishedBy finished);
 
 struct ConditionNoise {
-  std::optional<double> relative;  // over the picture's mean; none where it would be more than 1
-  std::optional<double> cd_m2;     // rms over the pixels that count; none where nothing is known
+  std::optional<double> relative;  // over the picture's mean; empty above 1
+  std::optional<double> cd_m2;     // RMS over the pixels that count; empty if unknown
   FinishedBy finished_by = FinishedBy::Error;
 };
 
-// rms, mean: of the pixels that count, cd/m^2. A picture of more noise than light tells only that
-// its light is not much more than the noise: what it is of that light depends on the seed alone.
+// rms, mean: of the pixels that count, cd/m^2. If the noise exceeds the light, the picture only
+// gives an upper bound of the light, and the ratio would depend on the seed.
 [[nodiscard]] ConditionNoise noise_of_condition(double rms, double mean);
 
-// Of a camera's conditions and their names: the range of the relative ones, which is noisiest, the
-// dark ones in cd/m^2, and how many were finished by what. "" where nothing is known.
+// Text about a camera's conditions: the range of their relative noise with the noisiest condition,
+// the dark conditions in cd/m^2, and the number of conditions by FinishedBy. "" without data.
 [[nodiscard]] std::string noise_text(std::span<const ConditionNoise> noise,
                                      std::span<const std::string> names);
 }  // namespace earthshine::studies

@@ -236,7 +236,7 @@ void read_cameras(StudyFile& study, const TableReader& root) {
   }
 }
 
-// A scene's file has other tables, and names no scene.
+// A scene file has other tables, and no `scene` key.
 void refuse_scene(const TomlTable& root) {
   if (find_entry(root, "scene") != nullptr || find_entry(root, "scenes") != nullptr) return;
   for (const char* key : {"object", "material", "camera", "light"}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What study files and the command line have in common.
+// Values that study files and the command line share.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -20,7 +20,7 @@ scenes::Scene bare(const SkyPlace& sky) {
   return scene;
 }
 
-// Gathers what several lamps of one group do.
+// Combines the lamps of one group.
 class Collector {
  public:
   explicit Collector(const scenes::Scene& scene, const BasisView::Target& target)
@@ -37,8 +37,8 @@ class Collector {
     return sources_.emplace_back(std::move(entry)).of;
   }
 
-  // share: what the source gives in this condition, 0 when off.
-  // straight: no form factor carries its direct light, which would make it that of its object.
+  // share: of the source's light in this condition, 0 if off. straight: no form factor carries its
+  // direct light (which would count as light of its object).
   void add(const std::string& group, const Reach& reach, double share, bool straight = true) {
     SourceOnTarget& of = source(group);
     Entry& entry = *std::find_if(sources_.begin(), sources_.end(),
@@ -85,7 +85,7 @@ class Collector {
   std::vector<Entry> sources_;
 };
 
-// From the middle of the points; 0 without any.
+// From the mean position of the points; 0 without points.
 double distance_to(const BasisView::Target& target, const Vec3& position) {
   if (target.points.empty()) return 0.0;
   Vec3 middle(0.0);
@@ -175,7 +175,7 @@ TargetSources sources_on(const LightBasis& basis, const scenes::RayQuery& query,
     if (lit) all.add("earth", reach_by(sky.sun), on ? 1.0 : 0.0);
     if (!on) all.source("earth").off = lit ? switched_off : "has its night side below";
     if (!lit && sky.sun) {
-      // What it would give by day.
+      // The Earth's light at its noon side, to state its reach by day.
       scenes::Sun noon = *sky.sun;
       noon.direction = -sky.earth->direction;
       all.add("earth", reach_by(noon), 0.0);

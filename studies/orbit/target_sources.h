@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which sources light a target, and how far, in one condition.
+// The sources that light a target in one condition, and the parts of it that they light.
 #pragma once
 
 #include <cstddef>
@@ -9,17 +9,19 @@
 
 namespace earthshine::studies {
 
-// Points of a target that shadow rays start from: a share is then known to 1 / sqrt(500) at worst.
+// Points of a target with shadow rays: the standard error of a share is at most 0.5 / sqrt(500).
 inline constexpr std::size_t most_source_points = 500;
 inline constexpr int earth_directions = 32;
 
-// SourceOnTarget::off of what the setting has switched off.
+// SourceOnTarget::off of sources that the setting switches off.
 inline constexpr const char* switched_off = "switched off";
-// And of what it leaves less than this share of, with that share behind it.
+// SourceOnTarget::off of sources that the setting dims below this share; the share follows the
+// text.
 inline constexpr double dimmed_share = 0.5;
 inline constexpr const char* dimmed_to = "dimmed to ";
 
-// Fills the target's `lamps`, `emitters` and `earth`: all shadow rays that serve every condition.
+// Casts the shadow rays that all conditions share, and fills the target's `lamps`, `emitters` and
+// `earth`.
 void reach_of_lamps(const LightBasis& basis, const scenes::RayQuery& query,
                     BasisView::Target& target);
 
@@ -32,7 +34,7 @@ struct TargetSources {
                                        const std::vector<bool>& straight_emitters,
                                        const GroupWeights& weights, const SkyPlace& sky);
 
-// Share of the Sun's disc that the Earth leaves free; 0 without a Sun.
+// Share of the Sun's disc that the Earth does not cover; 0 without a Sun.
 [[nodiscard]] double sun_share_of(const SkyPlace& sky);
 
 }  // namespace earthshine::studies

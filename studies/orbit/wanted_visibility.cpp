@@ -43,7 +43,7 @@ std::vector<Arc> arcs_above(const std::vector<double>& positions_deg,
   const std::size_t count = positions_deg.size();
   std::vector<Arc> arcs;
   if (count == 0) return arcs;
-  // Where the straight line between two neighbours meets `wanted`.
+  // Where the straight line between two neighbours crosses `wanted`.
   const auto crossing = [&](std::size_t a, std::size_t b, double to_b) {
     const double share = (wanted - probability[a]) / (probability[b] - probability[a]);
     return positions_deg[a] + share * (to_b - positions_deg[a]);
@@ -73,7 +73,7 @@ std::vector<Arc> arcs_above(const std::vector<double>& positions_deg,
   } else if (closed && first_in && count > 1) {
     arcs.front().first = crossing(count - 1, 0, around) - 360.0;
   }
-  if (closed && inside && first_in && arcs.size() > 1) {  // one arc over the start
+  if (closed && inside && first_in && arcs.size() > 1) {  // one arc across the start
     arcs.front().first = arcs.back().first - 360.0;
     arcs.pop_back();
   }

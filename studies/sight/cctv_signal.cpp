@@ -16,7 +16,7 @@ using degrade::AxisMap;
 using degrade::Picture;
 using degrade::Plane;
 
-// Taps below this share add less than a millionth to any variance and cost most of the time.
+// Smaller taps add less than 1e-6 to any variance and cost most of the time.
 constexpr double least_tap = 1e-5;
 
 AxisMap without_far_taps(const AxisMap& map) { return degrade::without_taps_below(map, least_tap); }
@@ -55,7 +55,7 @@ AxisMap squared(AxisMap map) {
 
 AxisMap nothing(int size) { return degrade::gaussian_blur(size, 0.0); }
 
-// The mean over each resel's pixels of the light that the phosphor spreads.
+// Mean over each resel's pixels of the light that the phosphor spreads.
 AxisMap mean_spread(const degrade::Monitor& monitor, int resels) {
   const int pixels = monitor.pixels_per_resel;
   return without_far_taps(
@@ -63,7 +63,7 @@ AxisMap mean_spread(const degrade::Monitor& monitor, int resels) {
               degrade::area_average(resels * pixels, resels)));
 }
 
-// The rest of the noise that comes with the light, once its filters are known.
+// Computes the remaining noise of the light from the filters.
 void carry_light_noise(CctvSignal& line, SignalPlane& plane, const Plane& exposed,
                        const AxisMap& along, const AxisMap& across, double lag_factor, bool on) {
   const degrade::NoiseLaw& law = line.report.noise;
@@ -86,8 +86,8 @@ void carry_light_noise(CctvSignal& line, SignalPlane& plane, const Plane& expose
   plane.pattern_at_line = filtered(plane.pattern);
 }
 
-// A saturated target passes no fluctuations on. full: the signal before it saturates. Near `most`
-// the share is the chance to be below (Bussgang's gain of a clamp).
+// A saturated target blocks fluctuations. full: the signal before saturation. Near `most` the share
+// is the probability to be below it (Bussgang's gain of a clamp).
 void saturate_noise(SignalPlane& plane, const Plane& full, double most, double noise_factor) {
   plane.passed.resize(full.size());
   for (std::size_t i = 0; i < full.size(); ++i) {
@@ -131,7 +131,7 @@ double mean_screen_luminance(const CctvSignal& line) {
 
 ShownRange shown_range(const degrade::CctvCamera& camera, const degrade::Report& report,
                        double mean_luminance) {
-  // Signal per cd/m^2 before gain; glare takes a share off each point and gives its mean to all.
+  // Signal per cd/m^2 before gain; glare removes a share from each point and distributes it evenly.
   const double per_luminance =
       degrade::lens_transfer(camera, report.exposure.f_number) / camera.white_lux;
   const double veil = camera.glare * mean_luminance;
@@ -145,7 +145,7 @@ ShownRange shown_range(const degrade::CctvCamera& camera, const degrade::Report&
 
 namespace {
 
-// A stage is known by its law.
+// Identifies a stage by its law.
 bool is_on(decltype(degrade::Stage::carry) carry, const degrade::Setup& setup,
            const degrade::Report* found) {
   const auto stages = degrade::stages();
@@ -174,7 +174,7 @@ CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup
   const degrade::StageContext at{setup, report, memory, 0, line.has_fields ? 2U : 1U};
 
   const auto is_on = [&](auto* carry) { return studies::is_on(carry, setup, &report); };
-  // A picture of one resel, on which the maps point by point leave what they are.
+  // A picture of one resel, on which only the point maps act.
   degrade::Moments maps = degrade::still({1, 1, {{0.0F}}});
   Picture exposed, full;
   bool at_maps = false, amplified = false, on_screen = false;

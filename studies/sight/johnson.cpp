@@ -37,7 +37,7 @@ std::vector<Point> hull_of(std::vector<Point> points) {
   return hull;
 }
 
-// Corners of the outermost pixels of each row; the hull of these is that of all.
+// Corners of the outermost pixels of each row; their hull is the hull of all pixels.
 std::vector<Point> corners_of(const std::vector<std::uint32_t>& pixels, int columns) {
   std::vector<Point> corners;
   const auto add = [&](std::uint32_t pixel, double side) {
@@ -60,7 +60,7 @@ struct Strip {
   double low = 0.0;  // of normal * point
 };
 
-// One side of the narrowest strip lies along an edge of the hull.
+// One side of the narrowest strip is along an edge of the hull.
 Strip narrowest_strip(const std::vector<Point>& hull) {
   Strip best;
   for (std::size_t i = 0; i < hull.size(); ++i) {
@@ -90,7 +90,7 @@ double log_threshold_of_rods(double x) {
   return std::pow(0.405 * x + 1.6, 2.18) - 2.86;
 }
 
-// In the dark, where the laws are level, so that no logarithm is infinite.
+// Limited to a luminance where the laws are constant, so that no logarithm is infinite.
 double log_luminance(double luminance) { return std::log10(std::max(luminance, 1e-12)); }
 
 }  // namespace

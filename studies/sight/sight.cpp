@@ -50,7 +50,7 @@ EyeSight eye_sight(const SightTarget& target, const TargetLight& light, double d
   eye.cycles = target.extent.angle_deg * eye.acuity;
   if (!light.surround) return eye;
   eye.weber = light.contrast;
-  // Against a surround brighter than what it is adapted to, the eye needs what that calls for.
+  // For a surround above the adaptation luminance, the threshold is that of the surround.
   const double least = options.eye.threshold_factor *
                        threshold_difference(std::max(mean_luminance, *light.surround));
   if (*light.surround > 0.0) eye.threshold = least / *light.surround;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a plan holds of each target.
+// The data of each target in a plan.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,7 +13,7 @@ namespace {
 constexpr int most_parts = 8;
 constexpr std::size_t least_pixels = 16;
 
-// Sectors about the middle of what is measured, dealt out so that each holds as many of its pixels.
+// Sectors around the centre of the measured pixels, with equal numbers of these.
 std::vector<SightTarget::Part> parts_of(const TargetView& view, int columns) {
   const auto count = static_cast<int>(
       std::min<std::size_t>(most_parts, view.measured.size() / (2 * least_pixels)));

@@ -66,7 +66,7 @@ double over(double signal, double variance) {
                                                       : std::copysign(degrade::most_snr, signal);
 }
 
-// sum over the target of (v - b)^2 / variance, with as many independent looks as its mean has.
+// Sum over the target of (v - b)^2 / variance, with the number of independent samples of its mean.
 double ideal_observer(const ShownMoments& moments, const WeightedResels& seen, double surround,
                       double variance_of_mean) {
   double sum = 0.0, variance = 0.0;
@@ -82,14 +82,14 @@ double ideal_observer(const ShownMoments& moments, const WeightedResels& seen, d
   return std::min(degrade::most_snr, std::sqrt(sum * variance / variance_of_mean));
 }
 
-// A difference of two means of floats that is below this share of them is rounding.
+// A difference of two float means below this share of them is a rounding error.
 constexpr double rounding = 1e-6;
 double difference(double a, double b) {
   const double d = std::abs(a - b);
   return d <= rounding * (std::abs(a) + std::abs(b)) ? 0.0 : d;
 }
 
-// Root mean square over the target's parts; `whole` of a target that is one part.
+// Root mean square over the target's parts; `whole` for a target of one part.
 double difference_of_parts(const TargetResels& at, const std::vector<float>& values, double whole) {
   if (at.parts.empty()) return whole;
   double sum = 0.0;
@@ -105,10 +105,10 @@ std::optional<double> weber_of(double target, double surround) {
   return (target - surround) / surround;
 }
 
-// Upper bounds of a difference that is nothing are infinite.
+// Replaces infinity for upper bounds of a zero difference.
 constexpr double most_factor = 1e6;
 
-// What the least modulation that is seen follows from.
+// Data for the least visible modulation.
 struct Needed {
   double delta = 0.0;       // of the line signal
   double of_target = 0.0;   // } variances in the eye's time: of the target's mean
@@ -117,8 +117,8 @@ struct Needed {
   double lines = 0.0;       // across the target
 };
 
-// C0 MTF(u) = 3 / SNR, the SNR of one bar: half a period wide, as long as the target, so that it
-// holds 1 / (2 u lines) of its resels; never less than a resel's.
+// C0 MTF(u) = 3 / SNR, with the SNR of one bar, but at least the SNR of a resel. A bar is half a
+// period wide and as long as the target, so that it has 1 / (2 u lines) of its resels.
 double least_modulation(const Needed& needed, double frequency) {
   const double bars = std::max(1.0, 2.0 * frequency * needed.lines);
   const double variance = std::min(needed.of_resel, needed.of_target * bars);
@@ -158,7 +158,7 @@ void count_levels(const SightPlan& plan, const SightTarget& target, const CctvSi
   out.crushed = crushed / static_cast<double>(target.seen.size());
 }
 
-// The rest of the figures, where there is a surround.
+// The remaining values, if there is a surround.
 void compare(TargetSignal& out, const TargetResels& at, const ShownMoments& moments,
              const CctvSignal& line, const degrade::Setup& setup, const SightOptions& options,
              int frames, const Extent& extent, const Trail& trail, const ContrastBounds& bounds) {
@@ -179,14 +179,15 @@ void compare(TargetSignal& out, const TargetResels& at, const ShownMoments& mome
   s.snr = over(s.mean, own);
   const MeanNoise noise = mean_noise(line, moments, at.seen, at.surround, frames);
   s.cnr = over(delta, both);
-  // CNR sqrt(N n / sum r), where N n / sum r is how much less the mean scatters than a resel.
+  // CNR sqrt(N n / sum r), where N n / sum r is the variance of a resel over the variance of the
+  // mean.
   const double mean_variance = own > 0.0 ? both * noise.variance_a / own : noise.variance_a;
   s.rose = over(delta, mean_variance);
   const double difference_variance = noise.variance_a + noise.variance_b - 2.0 * noise.covariance;
   s.snr_d = over(delta, difference_variance);
   s.dprime = left * ideal_observer(moments, at.seen, *s.surround, noise.variance_a);
 
-  // Parts are large, so that the phosphor's spread is nothing to their means.
+  // Parts are large, so that the phosphor's spread hardly changes their means.
   const double of_parts = at.parts.empty() ? 1.0 : left;
   const double light =
       of_parts * difference_of_parts(at, moments.luminance, difference(m.luminance, *m.surround));
@@ -207,7 +208,7 @@ void compare(TargetSignal& out, const TargetResels& at, const ShownMoments& mome
     const Needed needed{signal, mean_variance, in_time, shown > 0.0 ? least / shown : 1.0,
                         out.lines};
     const double frequency = limiting_frequency(setup, trail, extent.direction_rad, needed);
-    // Of the parts together: each has its share of the whole's looks.
+    // For all parts together: each has its share of the whole's samples.
     const double snr_d = over(signal, difference_variance);
     const double most = std::min(degrade::normal_probability(snr_d - options.even_chance_snr),
                                  seeing_probability(shown / least, options.eye));
@@ -232,7 +233,7 @@ Trail trail_of(const SightPlan& plan, const TargetView& view, const CctvSignal& 
   const double along = view.motion_px_s[0] * line.columns / plan.map.columns,
                across = view.motion_px_s[1] * line.rows / plan.map.rows;
   return {line.lag_per_field,
-          0.5 * std::hypot(along, across) * options.frame_s,  // lag goes by fields
+          0.5 * std::hypot(along, across) * options.frame_s,  // lag acts per field
           std::atan2(across, along)};
 }
 

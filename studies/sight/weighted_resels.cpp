@@ -76,7 +76,7 @@ Box transposed_across(const Box& in, const AxisMap& map) {
   return out;
 }
 
-// The smallest box that holds both sets, with nothing in it.
+// The smallest box around both sets, with values 0.
 Box box_around(const WeightedResels& a, const WeightedResels& b, int columns) {
   int left = columns, right = -1, top = 0, bottom = -1;
   bool any = false;
@@ -116,12 +116,12 @@ void multiply(Box& box, const Plane& by, int columns) {
   }
 }
 
-// The two sets seen from where the noise enters, in each field.
+// Weights g of the two sets where the noise enters, per field.
 struct Seen {
-  std::vector<Box> a, b;  // one or two fields; all of the same place
+  std::vector<Box> a, b;  // one or two fields; all with the same extent
 };
 
-// sum over z of v(z) p(z) q(z) for two boxes p of one field and two boxes q of another.
+// Sum over z of v(z) p(z) q(z) for two boxes p of one field and two boxes q of another.
 template <class Variance>
 MeanNoise sums_of(const Seen& g, std::size_t p, std::size_t q, Variance v) {
   const Box& place = g.a[p];
@@ -138,7 +138,7 @@ MeanNoise sums_of(const Seen& g, std::size_t p, std::size_t q, Variance v) {
   return sum;
 }
 
-// Adds what noise of these variances does: within a field, and between the two.
+// Adds noise with these variances: within a field, and between the two.
 template <class Variance>
 void add_noise(MeanNoise& noise, const Seen& g, Variance v, const TimeFactors& time, double share) {
   for (std::size_t f = 0; f < g.a.size(); ++f) {
@@ -159,7 +159,7 @@ WeightedResels weigh(const std::vector<std::uint32_t>& pixels, int picture_colum
                      int picture_rows, int grid_columns, int grid_rows) {
   if (pixels.empty()) return {};
   const std::size_t wide = static_cast<std::size_t>(grid_columns);
-  // Only the rows of the grid that the pixels can reach: most sets are small.
+  // Only the grid rows that the pixels can reach, because most sets are small.
   const auto row_of = [&](std::uint32_t pixel, std::uint32_t below) {
     const double row = pixel / static_cast<std::uint32_t>(picture_columns) + below;
     return std::min(static_cast<std::size_t>(row * grid_rows / picture_rows) + below,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How bright a target is, and what is round it (docs/studies.md has the formulas and thresholds).
+// Luminance of a target and of its surround (docs/studies.md has the formulas and thresholds).
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace earthshine::studies {
 
-// Luminance of a target and of what is round it, cd/m^2, and C_W = (L_t - L_b) / L_b.
+// Luminance of a target and its surround, cd/m^2, and C_W = (L_t - L_b) / L_b.
 struct TargetLight {
   double luminance = 0.0;          // mean over TargetView::measured
-  std::optional<double> surround;  // mean; none where the target fills the picture
-  std::optional<double> contrast;  // Weber; none without a surround or round a black one
+  std::optional<double> surround;  // mean; empty if the target fills the picture
+  std::optional<double> contrast;  // Weber; empty without a surround or if that is black
 };
 
-// Nothing where the target is not in view. `luminance` per pixel, as base::luminance_of gives it.
+// Empty if the target is not in view. `luminance` per pixel, from base::luminance_of.
 [[nodiscard]] std::optional<TargetLight> measure_light(const TargetView& view,
                                                        const std::vector<float>& luminance);
 

@@ -17,7 +17,7 @@ namespace {
 
 using Mask = std::vector<std::uint8_t>;
 
-// Calls visit(index) for the neighbours of a pixel that lie in the picture.
+// Calls visit(index) for the neighbours of a pixel in the picture.
 template <class Visit>
 void for_neighbours(int columns, int rows, std::uint32_t pixel, bool diagonal, Visit visit) {
   const int x = static_cast<int>(pixel) % columns, y = static_cast<int>(pixel) / columns;
@@ -42,7 +42,7 @@ std::vector<std::uint32_t> core_of(const ObjectMap& map, const std::vector<std::
   return core;
 }
 
-// Grows outward pixel by pixel, by 4 and by 8 neighbours in turn: octagons, nearly round.
+// Grows outward pixel by pixel, alternating 4 and 8 neighbours: octagons, nearly round.
 std::vector<std::uint32_t> surround_of(const ObjectMap& map,
                                        const std::vector<std::uint32_t>& seen) {
   Mask reached(map.object.size(), 0);
@@ -63,7 +63,7 @@ std::vector<std::uint32_t> surround_of(const ObjectMap& map,
   for (bool diagonal = false;; diagonal = !diagonal) {
     shell = grow(shell, diagonal);
     if (shell.empty()) break;
-    // The last shell is taken if it brings the count nearer to that of the target.
+    // The last shell counts if it brings the number closer to that of the target.
     const std::size_t before = surround.size(), after = before + shell.size();
     const bool nearer = after <= seen.size() || after - seen.size() < seen.size() - before;
     if (before > 0 && !nearer) break;
@@ -76,11 +76,12 @@ std::vector<std::uint32_t> surround_of(const ObjectMap& map,
 
 constexpr std::uint8_t shows_back = 2;  // in the mask of cast_alone; 1: any other of its surfaces
 
-// The pixels whose centre shows `object` when nothing else is there, and whether its black back.
+// The pixels whose centre shows `object` without all others, and whether they show its black back.
 Mask cast_alone(const scenes::Scene& scene, const scenes::Camera& camera, std::uint32_t object,
                 int columns, int rows) {
   scenes::Scene alone;
-  alone.vertices = scene.vertices;  // all of them, so that rays are rounded as in the whole scene
+  alone.vertices = scene.vertices;  // all vertices, so that rays have the same rounding as in the
+                                    // whole scene
   const scenes::Object& record = scene.objects[object];
   const auto first = scene.triangles.begin() + record.first_triangle;
   alone.triangles.assign(first, first + record.triangle_count);
@@ -103,7 +104,7 @@ Mask cast_alone(const scenes::Scene& scene, const scenes::Camera& camera, std::u
   return mask;
 }
 
-// What the map shows where the target would be seen alone.
+// Finds the objects that the map shows on pixels of `alone`.
 void find_blockers(TargetView& view, const ObjectMap& map, const Mask& alone) {
   std::map<std::int32_t, std::size_t> counts;
   for (std::size_t i = 0; i < alone.size(); ++i) {
@@ -136,7 +137,7 @@ bool reaches_frame(const scenes::Scene& scene, const raytrace::CameraModel& mode
   return false;
 }
 
-// Pixels per second that its middle moves by, to the right and down; none behind the camera.
+// Velocity of its centre in pixels per second, to the right and down; 0 behind the camera.
 std::array<double, 2> motion_of(const scenes::Scene& scene, const raytrace::CameraModel& model,
                                 std::uint32_t object, int columns, int rows) {
   const scenes::Object& record = scene.objects[object];
@@ -207,8 +208,8 @@ std::vector<TargetView> find_targets(const scenes::Scene& scene, const scenes::C
     TargetView view = find_target(map, object);
     view.name = scene.objects[object].name;
     Mask alone = cast_alone(scene, camera, object, map.columns, map.rows);
-    // The same ray may pass a silhouette on the other side by a rounding error; what is seen is
-    // there.
+    // A rounding error may move a ray to the other side of a silhouette; seen pixels are always
+    // part of `alone`.
     for (std::size_t i = 0; i < alone.size(); ++i) {
       if (map.object[i] != static_cast<std::int32_t>(object)) continue;
       if (alone[i] == shows_back) view.black_back.push_back(static_cast<std::uint32_t>(i));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a better CCTV would have: the part of sight_changes.h about its camera and monitor.
+// Changes of sight_changes.h for the CCTV's camera and monitor.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a bright thing does to a target, by the iris and by light that strays: the part of
-// sight_changes.h that looks for it.
+// Changes of sight_changes.h for bright things, by the iris and by stray light.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,12 +17,11 @@ namespace earthshine::studies {
 namespace {
 
 constexpr double least_stops = 0.25;
-// Of the brighter of target and surround: stray light below it changes nothing.
+// over the brighter of target and surround; less stray light has no effect
 constexpr double least_veil = 0.1;
-// All bright things together are only blamed where that opens the iris so much more.
+// All bright things together count only if they close the iris by so much more.
 constexpr double more_stops = 0.5;
-// Above any surface that sunlight falls on, cd/m^2: a pixel of an object's that holds a part of the
-// Sun's disc.
+// Brighter than any sunlit surface, cd/m^2: a pixel of an object with a part of the Sun's disc.
 constexpr float sun_in_pixel = 1e6F;
 
 struct BrightThing {
@@ -44,7 +42,7 @@ std::string name_of(const scenes::Scene& scene, std::int32_t key) {
   return scene.objects[static_cast<std::size_t>(key)].name;
 }
 
-// What a pixel without an object shows.
+// The object key of a pixel without an object.
 class Sky {
  public:
   explicit Sky(const WhyNotInputs& in)
@@ -57,7 +55,7 @@ class Sky {
     }
     return no_object;
   }
-  // As far as the pixel filter carries the Sun's light from its disc.
+  // Within the reach of the pixel filter around the Sun's disc.
   [[nodiscard]] bool shows_sun(std::size_t pixel) const {
     if (!in_.sun) return false;
     const double pixel_deg = in_.camera.fov_deg / in_.plan.map.rows;
@@ -80,7 +78,7 @@ class Sky {
   raytrace::CameraModel model_;
 };
 
-// Everything but the target, what weighs most in the meter first.
+// Everything but the target, by falling weight in the meter.
 std::vector<BrightThing> bright_things(const WhyNotInputs& in, std::uint32_t target,
                                        const std::vector<float>& luminance) {
   const Sky sky(in);
@@ -111,7 +109,7 @@ std::vector<BrightThing> bright_things(const WhyNotInputs& in, std::uint32_t tar
   return things;
 }
 
-// Where the iris stands for this luminance.
+// The exposure for this luminance.
 degrade::Exposure exposure_for(const degrade::Setup& setup, std::vector<float> luminance,
                                const ObjectMap& map) {
   for (float& value : luminance) value = std::max(value, 0.0F);
@@ -137,7 +135,7 @@ std::vector<std::uint32_t> pixels_of(const Gone& gone) {
   return pixels;
 }
 
-// These pixels at the mean of the others; `keep` (sorted) stay as they are.
+// Sets these pixels to the mean of the others, except `keep` (sorted).
 void take_away(std::vector<float>& values, const std::vector<std::uint32_t>& pixels,
                const std::vector<std::uint32_t>& keep = {}) {
   double rest = 0.0;
@@ -150,7 +148,7 @@ void take_away(std::vector<float>& values, const std::vector<std::uint32_t>& pix
   }
 }
 
-// Where the iris stands without these pixels' light.
+// The exposure without these pixels' light.
 degrade::Exposure exposure_without(const degrade::Setup& setup, std::vector<float> luminance,
                                    const std::vector<std::uint32_t>& pixels, const ObjectMap& map) {
   take_away(luminance, pixels);
@@ -166,8 +164,8 @@ std::string names_of(const Gone& gone) {
   return names;
 }
 
-// Whether the lens' glare, the tube's bloom and smear or, without a CCTV, the eye's adaptation
-// carry its light to the target.
+// Whether their light reaches the target by the lens' glare or the tube's bloom and smear or,
+// without a CCTV, changes the eye's adaptation.
 bool strays(const WhyNotInputs& in, const Gone& gone, double own) {
   const double count = static_cast<double>(in.plan.map.object.size());
   double sum = 0.0, peak = 0.0, pixels = 0.0;
@@ -205,7 +203,7 @@ BrightThings bright_changes(const WhyNotInputs& in, std::size_t index, const Gon
       stands + (sun ? fmt::format("iris closed by {:.1f} stops", found.stops)
                     : fmt::format("iris closed by {:.1f} stops for {}", found.stops, found.names));
   const bool closes = by_iris && found.stops >= least_stops, stray = strays(in, gone, own);
-  // What the target is measured against stays, but for the Sun, which is nobody's surface.
+  // The target's surround remains, except for the Sun, which is no surface.
   const std::vector<std::uint32_t> keep =
       sun ? std::vector<std::uint32_t>() : in.plan.targets[index].view.surround;
   const auto add = [&](Cause cause, std::string text, bool opens, bool clears) {

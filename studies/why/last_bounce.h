@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the diffuse light of a surface comes from last: straight from a source, or from an object
-// that reflects it on.
+// The last origin of a surface's diffuse light: a source, or an object that reflects the light.
 //   L = L_own + L_direct + rho / N sum_k B(hit_k) / pi       N cosine-weighted rays
-// Of what an emitting surface sends, its own light comes straight from it and only the rest by way
-// of it. Nothing is followed through mirrors and glass, and highlights are no diffuse light: what a
-// picture has of those is left over.
+// The emitted light of a surface counts as light from a source, the rest of its radiosity as
+// reflected. Rays stop at mirrors and glass, and highlights are not diffuse: the shares omit this
+// light.
 #pragma once
 
 #include <cstddef>
@@ -20,24 +19,24 @@
 
 namespace earthshine::studies {
 
-// What rays bring to some points, the mean over them, cd/m^2 by light group.
+// Mean light by rays over some points, cd/m^2 by light group.
 struct LastBounce {
   struct ByWayOf {
     std::uint32_t object = 0;
     std::vector<Rgb> by_group;
   };
   std::vector<ByWayOf> by_way;
-  std::vector<Rgb> straight;  // of emitters that no shadow ray is sent to (emitter_is_explicit)
+  std::vector<Rgb> straight;  // from emitters without shadow rays (emitter_is_explicit)
 };
 
-// Reads a solution, which must outlive it, as the scene and the rest do.
+// Reads a solution. The solution, the scene and the other arguments must outlive it.
 class LastBounces {
  public:
   LastBounces(const scenes::Scene& scene, const scenes::LightGroups& groups,
               const scenes::RayQuery& query, const radiosity::Solution& solution);
-  // `rays` from each point, fixed directions turned by the point's number: the same in each run. A
-  // share of p comes with a standard error below sqrt(p (1 - p) / (points rays)) where what is met
-  // is equally bright.
+  // Casts `rays` from each point, in fixed directions turned by the point's number: the same in
+  // each run. A share p has a standard error below sqrt(p (1 - p) / (points rays)) if all hits are
+  // equally bright.
   [[nodiscard]] LastBounce of(std::span<const SeenPoint> points, int rays) const;
 
  private:
@@ -52,19 +51,20 @@ class LastBounces {
 // One share of the light on a target or at a pixel.
 struct LightShare {
   std::string from;        // a light group, or an object
-  bool reflected = false;  // by way of that object
+  bool reflected = false;  // reflected by that object
   double share = 0.0;
 };
 inline constexpr const char* own_light = "its own light";  // of a surface that emits
-inline constexpr double least_light_share = 0.01;          // that is worth naming
+inline constexpr double least_light_share = 0.01;          // to be reported
 
-// Adds up where light comes from, in cd/m^2 of luminance.
+// Adds up the origins of light, in cd/m^2 of luminance.
 class LightShares {
  public:
   explicit LightShares(const scenes::Scene& scene, const scenes::LightGroups& groups)
       : scene_(scene), groups_(groups) {}
   void add(std::string_view from, bool reflected, double luminance);
-  // weight: of each group's light; empty: 1. Of the points' own light only what has a group counts.
+  // weight: factor on each group's light; empty: 1. The points' own light counts only if it has a
+  // group.
   void add(const LastBounce& light, std::span<const Rgb> weight = {});
   void add_own(std::span<const SeenPoint> points, std::span<const Rgb> weight = {});
   // As shares of `luminance`, above 0; largest first.
@@ -76,8 +76,8 @@ class LightShares {
   std::vector<LightShare> list_;
 };
 
-// All of them for the light that the scene has now, with a fixed sky; luminance: of the points,
-// cd/m^2, above 0. What the picture shows by mirror, glass, highlight or ambient term is in none.
+// All shares for the current light of the scene, with a fixed sky; luminance: of the points,
+// cd/m^2, above 0. Light by mirrors, glass, highlights or the ambient term is in no share.
 [[nodiscard]] std::vector<LightShare> light_shares(const scenes::World& world,
                                                    const radiosity::Solution& solution,
                                                    std::span<const SeenPoint> points,

@@ -14,23 +14,23 @@
 namespace earthshine::studies {
 namespace {
 
-// Light that may come to a point: E_normal from a direction, nothing in between.
+// Unoccluded light at a point from one direction.
 struct Beam {
   Vec3 direction{0.0};
   double distance_m = std::numeric_limits<double>::infinity();
-  double illuminance_lx = 0.0;  // on a plate that faces it; of this sample, of `count` to add up
+  double illuminance_lx = 0.0;  // normal illuminance of this sample; the `count` samples add up
 };
 
 Beam no_beam(const SeenPoint&, int) { return {}; }
 
-// The object that a shadow ray from the point to the light hits first; EarthBlockers::none: none.
+// The first object on a shadow ray from the point to the light; EarthBlockers::none: none.
 std::uint32_t blocker_of(const scenes::Scene& scene, const scenes::RayQuery& query,
                          const SeenPoint& point, const Beam& light) {
   const Vec3 origin = point.lifted();
   const scenes::ShadowSegment way =
       scenes::shadow_segment({light.direction, light.distance_m}, point.position, origin);
   const scenes::Hit hit = query.closest(origin, way.direction);
-  // A lamp's own surface, at the end of the way, is not in it.
+  // Excludes a lamp's own surface at the end of the ray.
   if (hit.missed() || !(hit.t < way.reach_m * (1.0 - 1e-4))) return EarthBlockers::none;
   return scene.triangles[hit.triangle].object;
 }
@@ -154,7 +154,7 @@ Reach reach_of_earth(const scenes::Scene& scene, const scenes::RayQuery& query,
                      std::span<const SeenPoint> points, const scenes::Earth& earth,
                      const std::optional<scenes::Sun>& sun, int directions,
                      const EarthBlockers* known) {
-  scenes::Scene sky;  // radiance of the Earth depends on nothing else
+  scenes::Scene sky;  // the Earth's radiance depends on nothing else
   sky.sun = sun;
   sky.earth = earth;
   if (!scenes::earth_is_lit(sky)) return reach_of(scene, query, points, 0, no_beam);

@@ -12,9 +12,9 @@ namespace {
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
 
-// How far a lamp that is too far is taken to be away, as a share of its distance.
+// Factor on the distance of a lamp that is too far.
 constexpr double nearer = 0.25;
-// Of the reference white: below, a lamp's distance may be to blame.
+// Relative to the reference white: below, the distance of a lamp may be the cause.
 constexpr double dark_signal = 0.25;
 // Weber contrast below which a target is as bright as its surround.
 constexpr double no_contrast = 0.02;
@@ -26,7 +26,7 @@ double mean_over(const base::Image& image, const std::vector<std::uint32_t>& pix
   return sum / static_cast<double>(std::max<std::size_t>(1, pixels.size()));
 }
 
-// Too dark, and not because an iris closed.
+// Whether the target is too dark for another reason than a closed iris.
 bool is_dark(const WhyNotInputs& in, std::size_t index) {
   const Sight& sight = in.sight.targets[index];
   if (!in.cctv || !in.sight.exposure) return true;  // an eye
@@ -40,7 +40,7 @@ bool is_dark(const WhyNotInputs& in, std::size_t index) {
 }  // namespace
 
 Scenario scenario_of(const WhyNotInputs& in, std::size_t index, const SightOptions& options) {
-  // Sights ask the map for its size alone; a scenario is copied often.
+  // Sights need only the map's size; a scenario is copied often.
   const ObjectMap size{in.plan.map.columns, in.plan.map.rows, {}};
   Scenario scenario{{size, in.plan.fov_deg, {in.plan.targets[index]}}, {}, in.cctv, options};
   scenario.radiance.width = in.radiance.width;
@@ -79,7 +79,7 @@ void hold_exposure(Scenario& scenario, const degrade::Exposure& exposure) {
 std::optional<Change> without_hiding(const WhyNotInputs& in, std::size_t index) {
   const TargetView& view = in.plan.targets[index].view;
   const auto alone = static_cast<double>(view.pixels_alone);
-  // What hides a corner is no reason.
+  // A hidden corner is no reason.
   if (view.hidden_by.empty() || static_cast<double>(view.hidden.size()) < 0.1 * alone) {
     return std::nullopt;
   }
@@ -159,7 +159,8 @@ std::vector<Change> with_light(const WhyNotInputs& in, std::size_t index,
       by_light.emplace_back(more, change);
     } else if (why.empty() && source.distance_m > 0.0 && source.direct > 0.0 &&
                source.luminance > 0.5 * now && is_dark(in, index)) {
-      // Its share of the target's light, over the whole picture: what stands beside is as far.
+      // Scales the whole picture by the lamp's share of the target's light: surfaces beside the
+      // target are as far.
       const double share = std::min(1.0, source.luminance / now);
       const double factor = 1.0 + share * (1.0 / (nearer * nearer) - 1.0);
       why = fmt::format("{} is too far ({:.3g} m), it gives {:.2g} cd/m^2", source.group,
@@ -197,7 +198,7 @@ std::optional<Change> without_black_back(const WhyNotInputs& in, std::size_t ind
   change.share = share;
   change.text = fmt::format("black back seen ({} of it): its surface has one side", percent(share));
   change.without = "with a back like its front";
-  // The mean was taken over all points, this goes on those that show the back.
+  // The mean is over all points; only pixels with the back change.
   change.apply = [&back, more = more / share](Scenario& scenario) {
     for_light(scenario.radiance, [&](std::vector<float>& values) {
       for (const std::uint32_t pixel : back) values[pixel] += static_cast<float>(more);

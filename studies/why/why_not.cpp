@@ -30,7 +30,7 @@ double probability_of(const Scenario& scenario, const Task& task) {
 struct Trial {
   Change change;
   double probability = 0.0;
-  // The same thing's lesser changes, which may do as well.
+  // Smaller changes of the same thing, which may suffice.
   std::vector<Change> lesser = {};
 };
 
@@ -56,7 +56,7 @@ std::string joined(const std::vector<Reason>& reasons, const char* between) {
   return text;
 }
 
-// Tries changes of one target.
+// Tries changes for one target.
 class Trials {
  public:
   Trials(const WhyNotInputs& in, std::size_t index, const Task& task, const WhyNotOptions& options)
@@ -85,12 +85,12 @@ class Trials {
   void add(std::optional<Change> change) {
     if (change) add(std::vector<Change>{std::move(*change)});
   }
-  // The brightest thing of which the least change is enough; else what opens the iris most, or
-  // strays most.
+  // Adds the brightest thing with a sufficient change, in its least such change; otherwise the
+  // thing that opens the iris most, or has most stray light.
   void add_bright_things() {
     std::vector<BrightThings> things = without_bright_things(in_, index_, options_.bright_things);
     for (const BrightThings& thing : things) {
-      // What takes away most is asked first: where that does not help, nor does less of it.
+      // Tries the largest change first: if it does not help, smaller ones do not either.
       if (thing.changes.size() > 1 && !cures(without({thing.changes.back()}))) continue;
       for (const Change& change : thing.changes) {
         const double p = without({change});
@@ -109,7 +109,7 @@ class Trials {
     list_.push_back({std::move(strongest), p, std::move(most->changes)});
   }
 
-  // All that are needed together; no reasons where not even all would do.
+  // The causes that are needed together; no reasons if even all do not suffice.
   [[nodiscard]] WhyNot several() const {
     std::vector<Trial> needed = list_;
     if (!cures(without_these(needed))) return {};
@@ -159,7 +159,7 @@ class Trials {
   std::vector<Trial> list_;
 };
 
-// What is left to say where nothing helps.
+// The reason if no change helps.
 Reason nothing_helps(const Sight& sight, const std::vector<SourceOnTarget>& sources) {
   Reason reason;
   std::string dark;
@@ -232,7 +232,7 @@ WhyNot why_not(const WhyNotInputs& in, std::size_t index,
   WhyNot why;
   if (!trials.any_cures()) {
     why = trials.several();
-    // What the viewer lacks says nothing where the picture could be better.
+    // Limits of the viewer count only if no better picture helps.
     if (why.reasons.empty()) {
       trials.add(without_limits_of_the_eye(in, index));
       if (!trials.any_cures()) why = trials.several();

@@ -1,27 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a target is not seen better: one cause at a time is taken away and the sight measured again.
-//   out-of-view  it would not show even alone
-//   hidden       what stands in front of a tenth of it or more is taken away, by name
-//   black-back   a one-sided surface seen from behind reflects as its front does
-//   unlit        a source reaches all of it that faces the source, is switched on, or is a lamp at
-//                a quarter of its distance; what would give most first
-//   iris         the iris stands as it would without a bright thing, by name; its light stays,
-//                unless only both together help
-//   glare        the lens' glare, the tube's bloom and smear have nothing of a bright thing
+// The reasons why a target is not seen better. Each cause is removed alone, and the sight is
+// measured again.
+//   out-of-view  it would not be in view even alone
+//   hidden       removes objects in front of a tenth of it or more, by name
+//   black-back   a one-sided surface seen from behind reflects like its front
+//   unlit        a source reaches all points that face it, is on, or is a lamp at a quarter
+//                of its distance; the largest gain first
+//   iris         opens the iris as without a bright thing, by name; its light remains, unless only
+//                both changes together help
+//   glare        removes a bright thing's light from the lens' glare and the tube's bloom and smear
 //   saturated    exposure so low that target and surround are below white, at least two stops
-//   lag          the tube keeps nothing of the field before; of a target that moves
-//   blur         one of lens, tube, video line and monitor spreads nothing
+//   lag          the tube has no lag; for a target that moves
+//   blur         one of lens, tube, video line and monitor has no blur
 //   noise        no noise
 //   room-light   the room does not light the monitor
-//   contrast     the eye sees any difference, and what is as bright as its surround stands on black
-//   small        any number of cycles across it will do
-// A cause is a reason if without it the probability of the first task that fails rises by
-// `least_gain` or over the wanted one; those that bring it over the wanted one drop those that do
-// not. If no single one does, all are taken away together, and those that are then put back, the
-// last of the order above first, without the task failing again are no reasons. `contrast` and
-// `small`, which are the viewer's, are asked only where nothing before him would do. Of bright
-// things the brightest that is enough is named. A black back that makes the target doubtful is
-// always a reason. Reasons stand in the order above.
+//   contrast     the eye sees any difference; a target as bright as its surround is put on black
+//   small        any number of cycles across it suffices
+//
+// A cause is a reason if its removal raises the probability of the first failing task by
+// `least_gain` or above the wanted one. Causes that reach the wanted probability displace those
+// that do not. If no single cause reaches it, all are removed together; causes that can return, the
+// last of the order above first, without a failure of the task are no reasons. `contrast` and
+// `small`, limits of the viewer, are tried only if nothing else helps. Of bright things, the
+// brightest sufficient one is named. A black back that makes the target doubtful is always a
+// reason. Reasons have the order above.
 #pragma once
 
 #include <optional>
@@ -54,42 +56,42 @@ enum class Cause {
 
 struct Reason {
   Cause cause = Cause::Small;
-  std::string by;  // object or light group; of blur lens, tube, line or monitor; may be empty
-  std::optional<double> share;  // hidden: of the target's pixels; unlit: of it, in the dark
-  std::optional<double> probability_without;  // none where it cannot be known
+  std::string by;  // object or light group; for blur: lens, tube, line or monitor; may be empty
+  std::optional<double> share;  // hidden: of the target's pixels; unlit: of the target, in the dark
+  std::optional<double> probability_without;  // empty if unknown
   std::string text;                           // "hidden by tail (83 % of it): without it 0.94"
 };
 
 struct WhyNot {
   std::vector<Reason> reasons;
-  std::string text;  // one line; empty when the target is identified
-  // That of the failing task with all of several reasons taken away; none where one is enough.
+  std::string text;  // one line; empty if the target is identified
+  // Probability of the failing task without several reasons together; empty if one suffices.
   std::optional<double> probability_without_all;
 };
 
-// A light group and what it does to one target.
+// A light group and its light on one target.
 struct SourceOnTarget {
   std::string group;
   std::string off =
-      {};  // why it gives no light: "switched off", "in the Earth's shadow"; else empty
+      {};  // cause if it gives no light: "switched off", "in the Earth's shadow"; otherwise empty
   double luminance = 0.0;   // of the target by this group, cd/m^2, all paths
-  double lit = 0.0;         // share of its seen points that get direct light (0 when off)
-  double facing = 0.0;      // share that would if nothing stood between
-  double direct = 0.0;      // luminance by its direct light alone (0 when off)
-  double unshadowed = 0.0;  // the same if it were on with nothing in between
-  double on_back = 0.0;     // what `direct` would be more if black backs were as their fronts
-  double straight = 0.0;    // of `direct`, what no object counts as its reflected light
-  double distance_m = 0.0;  // of a lamp, to the middle of what is seen; 0: none, or not known
-  std::vector<std::string> shadow_of = {};  // objects in between, most first
-  // The picture with this group on, where it is off and the picture is at hand; otherwise only the
-  // target is thought to be lit.
+  double lit = 0.0;         // share of its seen points with direct light (0 when off)
+  double facing = 0.0;      // share without occluders
+  double direct = 0.0;      // luminance by its direct light (0 when off)
+  double unshadowed = 0.0;  // `direct` if it were on, without occluders
+  double on_back = 0.0;     // additional `direct` if black backs reflected like their fronts
+  double straight = 0.0;    // part of `direct` that no object's reflected light includes
+  double distance_m = 0.0;  // of a lamp, to the centre of the seen points; 0: no lamp, or unknown
+  std::vector<std::string> shadow_of = {};  // occluders, most first
+  // The picture with this group on, if it is off and the picture is available; otherwise only the
+  // target's luminance changes.
   const base::Image* when_on = nullptr;
 };
 
 struct WhyNotOptions {
   double wanted = 0.5;  // probability of the task
   double least_gain = 0.1;
-  std::size_t bright_things = 6;  // how many are tried for the iris
+  std::size_t bright_things = 6;  // number of things tried for the iris
   SightOptions sight;
 };
 
@@ -104,7 +106,7 @@ struct WhyNotInputs {
   std::optional<scenes::Earth> earth;  // }
 };
 
-// sources: of target `index` of the plan. Nothing is computed for a target that is identified.
+// sources: of target `index` of the plan. Computes nothing for a target that is identified.
 [[nodiscard]] WhyNot why_not(const WhyNotInputs& inputs, std::size_t index,
                              const std::vector<SourceOnTarget>& sources,
                              const WhyNotOptions& options = {});

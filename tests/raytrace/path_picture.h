@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small pictures of the path tracer, judged by their own variance.
+// Small pictures of the path tracer, tested within their own variance.
 #pragma once
 
 #include <gtest/gtest.h>

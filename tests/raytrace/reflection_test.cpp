@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light that reaches a surface by way of others: bright patches, glossy surroundings.
+// Reflected light: bright patches, glossy surfaces.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,15 +24,15 @@ double mean_green(const scenes::Scene& scene, const scenes::Camera& camera, doub
 }
 
 TEST(Reflection, SmallBrightPatchLightsAPlateByItsFormFactor) {
-  // A ceiling plate of 0.1 m, 1 m above the point in view, lit from 0.3 m below by a narrow spot
-  // that the floor does not see: L = rho B F / pi, F from a point to a parallel square on its axis.
-  // Found by chance by one gather ray in 300, it must neither be lost nor counted twice by the rays
-  // aimed at it.
+  // A ceiling plate of 0.1 m, 1 m above the visible point, lit from 0.3 m below by a narrow spot
+  // lamp that the floor does not see: L = rho B F / pi, F from a point to a parallel square on its
+  // axis. One gather ray in 300 finds it by chance; it must be neither lost nor counted twice by
+  // the rays aimed at it.
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 0.002, 0.0, true);
   builder.plate(builder.material(tests::grey(0.5)), 0.1, 1.0, false);
   builder.plate(builder.material(tests::grey(0.0)), 20.0, -1.0,
-                true);  // what else there is, is black
+                true);  // all other surfaces are black
   scenes::Lamp lamp;
   lamp.name = lamp.group = "spot";
   lamp.kind = scenes::LampKind::Spot;
@@ -53,15 +53,15 @@ TEST(Reflection, SmallBrightPatchLightsAPlateByItsFormFactor) {
   const double b = prepared.solve(solve).report.objects[1].radiosity_lm_m2.g;
   const double x = 0.05 / std::sqrt(1.0 + 0.05 * 0.05);
   const double form_factor = 4.0 * x * std::atan(x) / base::pi;
-  // The aimed rays' integrand varies by under 1 % over the small plate; 64 pixels with 8 of them
-  // each.
+  // The aimed rays' integrand varies by less than 1 % over the small plate; 64 pixels with 8 of
+  // them each.
   EXPECT_NEAR(mean_green(builder.scene, camera, 0.1) / (0.5 * b * form_factor / base::pi), 1.0,
               4.0 * 0.01);
 }
 
 // A small glossy plate in a large furnace of radiance 1 / pi, seen along its normal:
-// pi L = k_d + (2 k_s / (n + 2)), since the integral of (k_s / pi) cos^(n+1) over the hemisphere is
-// that.
+// pi L = k_d + (2 k_s / (n + 2)), the second term the integral of (k_s / pi) cos^(n+1) over the
+// hemisphere.
 void expect_glossy_albedo(double exponent, double specular) {
   tests::SceneBuilder builder;
   const std::uint32_t wall = builder.material(tests::grey(0.7, 0.3));
@@ -77,7 +77,8 @@ void expect_glossy_albedo(double exponent, double specular) {
   camera.up = Vec3(0, 1, 0);
   camera.fov_deg = 0.1;
   const double expected = 0.2 + 2.0 * specular / (exponent + 2.0);
-  // 2048 lobe rays whose weights 2 k_s cos / (n + 1) have a spread of about their mean / (n + 2).
+  // 2048 lobe rays whose weights 2 k_s cos / (n + 1) have a standard deviation of about their
+  // mean / (n + 2).
   const double std_error = 2.0 * specular / (exponent + 2.0) / (exponent + 2.0) / std::sqrt(2048.0);
   EXPECT_NEAR(base::pi * mean_green(builder.scene, camera, 5.0), expected, 4.0 * std_error + 1e-5);
 }
@@ -91,8 +92,8 @@ TEST(Reflection, SharpLobeReflectsItsAlbedoOfAUniformSurrounding) {
 }
 
 TEST(Reflection, TheAmbientTermIsInMirrorsAndInNoLobe) {
-  // A floor that only reflects, under a ceiling of k_d 0.5 that the ambient term of 10 cd/m2 alone
-  // lights: a mirror of 0.4 shows 0.4 x 5, a lobe of any exponent nothing.
+  // A floor that only reflects, under a ceiling of k_d 0.5 lit only by the ambient term of 10
+  // cd/m2: a mirror of 0.4 shows 0.4 x 5, a lobe of any exponent nothing.
   for (const double shininess : {0.0, 50.0, 200.0}) {
     tests::SceneBuilder builder;
     scenes::Material floor = tests::grey(0.0);
@@ -102,7 +103,7 @@ TEST(Reflection, TheAmbientTermIsInMirrorsAndInNoLobe) {
     builder.plate(builder.material(floor), 1.0, 0.0, true);
     builder.plate(builder.material(tests::grey(0.5)), 4.0, 1.0, false);
     builder.scene.ambient_radiance = Rgb(10.0);
-    scenes::Lamp lamp;  // over the ceiling, so that rays are cast at all
+    scenes::Lamp lamp;  // above the ceiling, so that rays are cast at all
     lamp.name = lamp.group = "lamp";
     lamp.position = Vec3(0.0, 0.0, 1.5);
     lamp.intensity_cd = Rgb(1.0);

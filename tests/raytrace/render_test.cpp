@@ -65,7 +65,8 @@ TEST(Render, SunlitDiffusePlateHasRadianceRhoECosOverPi) {
 }
 
 TEST(Render, PointLampOnAPlateIsExact) {
-  // 500 cd at 2 m over the spot in view: L = rho I / (pi d^2); the spot of 2 mm changes it by 1e-6.
+  // 500 cd at 2 m above the visible spot: L = rho I / (pi d^2); the spot of 2 mm changes it by
+  // 1e-6.
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.8)), 1.0, 0.0, true);
   scenes::Lamp lamp;
@@ -78,7 +79,7 @@ TEST(Render, PointLampOnAPlateIsExact) {
 }
 
 TEST(Render, PhongHighlightAtTheMirrorAngleAddsKs) {
-  // pi L / (E cos) = k_d + k_s at the mirror direction: camera and Sun both on the normal.
+  // pi L / (E cos) = k_d + k_s in the mirror direction: camera and Sun both on the normal.
   tests::SceneBuilder builder;
   scenes::Material glossy = tests::grey(0.3);
   glossy.specular = Rgb(5.0);
@@ -103,7 +104,7 @@ TEST(Render, PhongHighlightFallsWithTheCosinesPower) {
 }
 
 TEST(Render, FurnaceLooksTheSameEverywhereInEveryPixel) {
-  // Closed room of rho 0.8 and M = 0.2: radiance 1 / pi whatever the camera looks at.
+  // Closed room of rho 0.8 and M = 0.2: radiance 1 / pi in every direction.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.8, 0.2));
   builder.room({m, m, m, m, m, m});
@@ -116,8 +117,8 @@ TEST(Render, FurnaceLooksTheSameEverywhereInEveryPixel) {
 }
 
 TEST(Render, FurnaceWithMirrorAndGlassIsStillUniform) {
-  // Every mechanism at once must return what it takes: a lobe of k_s = 0.2, n = 2 on k_d = 0.6
-  // reflects less near grazing, so that only mirror and clear glass keep the furnace exact.
+  // Every mechanism must conserve energy: a lobe of k_s = 0.2, n = 2 on k_d = 0.6 reflects less
+  // near grazing, so that only mirror and clear glass keep the furnace exact.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.8, 0.2));
   scenes::Material mirror = tests::grey(0.0);
@@ -242,8 +243,8 @@ TEST(Render, DirectLightAloneCastsGatherRaysOnlyForAWideEarth) {
 }
 
 TEST(Render, DistributedLightsConvergeToTheEarthsDisc) {
-  // N equal lights over the disc on an open plate: E = (pi L sin^2) within the Fibonacci cap's
-  // error, which for a smooth integrand at N = 1024 is below 1e-3.
+  // N equal lights over the disc on an open plate: E = (pi L sin^2) within the error of the
+  // Fibonacci lattice, which for a smooth integrand at N = 1024 is below 1e-3.
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
   scenes::Earth earth;
@@ -271,7 +272,7 @@ TEST(Render, AovsDescribeTheFirstSurfaceAlongThePixelsCentre) {
   EXPECT_NEAR(at("N.Z", 4), 1.0, 1e-6);
   EXPECT_NEAR(at("albedo.R", 4), 0.5, 1e-7);
   EXPECT_EQ(at("object", 4), 0.0F);
-  EXPECT_EQ(at("object", 0), -1.0F);  // the corners look past the plate
+  EXPECT_EQ(at("object", 0), -1.0F);  // the corners are beside the plate
   EXPECT_TRUE(std::isinf(at("Z", 0)));
 }
 

@@ -16,7 +16,7 @@
 namespace earthshine::raytrace {
 namespace {
 
-// A plate, a glossy one and a mirror on edge, seen before the Earth's disc.
+// A plate, a glossy plate and a mirror on edge, in front of the Earth's disc.
 scenes::Scene things() {
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.6)), 4.0, 0.0, true);
@@ -55,9 +55,14 @@ Frame drawn(const scenes::Scene& scene, bool per_light, std::uint64_t seed = 1) 
   return render(prepared, prepared.solve(solve), looking_up(), options);
 }
 
+<<<<<<< HEAD
 // Every layer is rounded a few times on its way (radiosity, its sum over rays, the pixel), by
 // 2^-24 of itself, all to one side at worst. The residual is a difference of terms that are as
 // large as the light, in two halves of four paths: three times as much.
+=======
+// Every layer is rounded a few times (radiosity, its sum over rays, the pixel), by 2^-24 of its
+// value, in the worst case in the same direction.
+>>>>>>> part-X1
 void expect_same_sum(const scenes::Scene& scene, std::size_t cells, bool lit_everywhere) {
   const Frame whole = drawn(scene, false);
   const Frame parts = drawn(tests::in_parts(scene, cells), true);
@@ -90,8 +95,8 @@ TEST(SkyParts, LayersOfCellsAddUpToTheEarthsPicture) {
 }
 
 TEST(SkyParts, ThePartOfAPointSunIsTheSunsPicture) {
-  // Without mirrors: the Sun in them lights parts of patches, where two sources have sample points
-  // of their own.
+  // Without mirrors: sunlight by mirrors covers parts of patches, and the sample points of the two
+  // sources differ.
   scenes::Scene scene = things();
   for (scenes::Material& material : scene.materials) material.mirror = Rgb(0.0);
   scenes::Sun sun;
@@ -102,8 +107,8 @@ TEST(SkyParts, ThePartOfAPointSunIsTheSunsPicture) {
   expect_same_sum(scene, 2, false);
 }
 
-// The disc itself, seen by the camera and in the mirror: E / (pi sin^2 r) whether it is the scene's
-// Sun or a part. Nothing else of the picture is as bright.
+// The disc itself, seen by the camera and in the mirror: E / (pi sin^2 r) for the scene's Sun and
+// for a part. Nothing else in the picture is as bright.
 TEST(SkyParts, TheDiscOfASunIsSeen) {
   scenes::Scene scene = things();
   scenes::Sun sun;
@@ -148,9 +153,8 @@ scenes::Scene under(scenes::SkyParts parts) {
   return scene;
 }
 
-// Many Suns take turns at paths. What each of them gives has the mean that it
-// has in a picture of its own: over pictures of other seeds, within four standard errors of their
-// difference.
+// Paths carry the many Suns by strata. The light of each Sun has the mean of a picture with this
+// Sun alone: over pictures with different seeds, within four standard errors of their difference.
 TEST(SkyParts, SunsThatTakeTurnsGiveWhatEachGivesAlone) {
   constexpr std::size_t count = many_suns;
   constexpr std::uint64_t seeds = 12;
@@ -167,7 +171,7 @@ TEST(SkyParts, SunsThatTakeTurnsGiveWhatEachGivesAlone) {
     one.suns = {all.suns[k]};
     double sum = 0.0, squares = 0.0;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-      // A single group has no layer of its own.
+      // A single group has no layer.
       const double off =
           taking_turns[k][seed - 1] - mean_of(drawn(under(one), true, seed + seeds), "G");
       sum += off;
@@ -181,10 +185,10 @@ TEST(SkyParts, SunsThatTakeTurnsGiveWhatEachGivesAlone) {
   }
 }
 
-// Both halves of a point's paths take all turns: what they differ by is chance, and what is stated
-// by it of one Sun is what pictures of other seeds differ by. Were a Sun in one half alone, its
-// light would count as noise. Squares averaged over pairs of seeds; nothing is shared, which would
-// take its part of the noise.
+// Both halves of a point's paths cover all strata: they differ by chance only, and the stated error
+// of one Sun equals the difference between seeds. A Sun in only one half would count as noise.
+// Squares averaged over pairs of seeds; without denoising, which would remove its part of the
+// noise.
 TEST(SkyParts, NoiseStatedOfASunThatTakesTurnsIsWhatOtherSeedsDifferBy) {
   constexpr std::uint64_t pairs = 12;
   const scenes::Scene scene = under(nine_suns());
@@ -193,7 +197,7 @@ TEST(SkyParts, NoiseStatedOfASunThatTakesTurnsIsWhatOtherSeedsDifferBy) {
   solve.patch_edge_m = 0.5;
   solve.form_factor_rays = 256;
   radiosity::Solution solution = prepared.solve(solve);
-  // All that surfaces send on is left to paths.
+  // Leaves all interreflection to paths.
   for (auto* values : {&solution.radiosity, &solution.indirect_radiosity}) {
     for (float& value : *values) value = 0.0F;
   }

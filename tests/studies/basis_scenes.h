@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes, places and pictures that the weighted sums of a light basis are tried on.
+// Scenes, places and pictures for tests of a light basis' weighted sums.
 #pragma once
 
 #include <cmath>
@@ -22,10 +22,10 @@ inline scenes::Lamp point_lamp(const std::string& name, const std::string& group
   return lamp;
 }
 
-// A room without a ceiling with a plate in it (object 5, a target): a disk "spot" of its own group,
-// lamps "left" and "right" of the group "bay", and a wall of the group "panels" that shines. The
-// random numbers of a lamp follow from how many shine before it in the list: those that stay the
-// same when another fails come first.
+// A room without a ceiling with a plate in it (object 5, a target): a disk "spot" with its own
+// group, lamps "left" and "right" of the group "bay", and an emitting wall of the group "panels".
+// The random numbers of a lamp depend on the number of shining lamps before it in the list. Hence
+// lamps that keep their numbers when another fails come first.
 inline scenes::Scene open_room() {
   SceneBuilder builder;
   scenes::Material red = grey(0.5);
@@ -59,7 +59,7 @@ inline scenes::Camera into_the_room() {
   return camera;
 }
 
-// Even patches, the solver to rounding, no denoising: the same rays whatever the lights are.
+// Even patches, a converged solver, no denoising: the same rays for any lights.
 inline raytrace::Frame same_rays(const scenes::Scene& scene, const scenes::LightGroups& groups,
                                  const scenes::Camera& camera, bool per_light) {
   scenes::Asked asked;
@@ -88,8 +88,8 @@ inline raytrace::Frame basis_picture(const studies::LightBasis& basis,
   return same_rays(basis.scene(), basis.groups(), camera, true);
 }
 
-// Sun and Earth along an orbit at 425 km in its plane's sunlight; a point Sun, so that pictures
-// have the same rays with and without the others.
+// Sun and Earth along an orbit at 425 km in the plane of the sunlight; a point Sun, so that
+// pictures have the same rays with and without the others.
 inline std::vector<studies::SkyPlace> orbit_places(const std::vector<double>& positions_deg,
                                                    scenes::EarthModel model,
                                                    const std::string& attitude = "bay-to-earth",

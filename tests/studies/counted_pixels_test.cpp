@@ -51,9 +51,9 @@ TEST(CountedPixels, SurfacesCountAndSourcesDoNot) {
   EXPECT_EQ(count(), 0);
 }
 
-// The same plate, which emits 0.001 pi lm/m^2 and shows L = (0.5 1000 + 0.001 pi) / pi: all of its
-// pixels count, and without what it emits it shows 500 / pi. A disk of 0.2 m, 1.6 pixels, before it
-// hides its middle. Away from the rim the pixels are those that the picture states an error of.
+// The same plate emits 0.001 pi lm/m^2 and has L = (0.5 1000 + 0.001 pi) / pi: all of its pixels
+// count, with 500 / pi without its emission. A disk of 0.2 m, 1.6 pixels, hides its middle. Away
+// from the rim the same pixels are in the picture's stated error.
 TEST(CountedPixels, AWallThatGlowsCountsByWhatItReflects) {
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5, 0.001 * base::pi)), 1.0, 0.0, true);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uniform discs on a uniform ground, a resel for each pixel: pictures whose figures are known.
+// Uniform discs on a uniform ground, one resel per pixel: pictures with known values.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ struct DiscPicture {
   base::Image image;
 };
 
-// Later discs stand in front of earlier ones. What is no disc shows no object.
+// Later discs are in front of earlier ones. The ground has no object.
 inline DiscPicture discs_on(double ground, const std::vector<Disc>& discs, int columns, int rows) {
   DiscPicture picture;
   picture.camera.look_at = Vec3(1.0, 0.0, 0.0);
@@ -85,7 +85,7 @@ inline DiscPicture bright_disc(double radius = 20.0) {
 }
 
 // A linear camera without faults and with a fixed iris, white at `white_luminance`, on a linear
-// monitor of one pixel per resel that spreads nothing in a dark room: black 0, white 100 cd/m^2.
+// monitor of one pixel per resel without spread in a dark room: black 0, white 100 cd/m^2.
 inline degrade::Setup plain_cctv(int columns, int rows, double white_luminance) {
   degrade::Setup setup;
   setup.camera.iris = degrade::IrisMode::Fixed;

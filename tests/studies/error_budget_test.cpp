@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a picture states of its own error.
+// The stated error of a picture.
 #include "raytrace/error_budget.h"
 
 #include <gtest/gtest.h>
@@ -43,9 +43,15 @@ NoisyPicture traced_room(std::uint64_t seed) {
 }
 
 TEST(ErrorBudget, WhatIsAskedForIsStatedAndTrue) {
+<<<<<<< HEAD
   // Against two independent path-traced pictures. Twelve pictures, three errors asked for: each
   // states no more than was asked, and nine of ten are no further off the truth than their bound.
   const ReferencePair truth{traced_room(11), traced_room(12)};
+=======
+  // Against two independent path-traced pictures. Twelve pictures, three wanted errors: each
+  // picture states at most the wanted error, and nine of ten have a true error within their bound.
+  const ReferencePair truth{traced(11), traced(12)};
+>>>>>>> part-X1
   int within = 0, all = 0;
   for (const double asked : {0.1, 0.05, 0.03}) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -75,7 +81,7 @@ TEST(ErrorBudget, PartsAddUpToTheWhole) {
   EXPECT_GT(p.gather.estimate, 0.0);
   EXPECT_GT(p.interreflection.estimate, 0.0);
   EXPECT_GT(p.camera_samples.estimate, 0.0);
-  EXPECT_EQ(p.lobes.estimate, 0.0);  // nothing is glossy
+  EXPECT_EQ(p.lobes.estimate, 0.0);  // no surface is glossy
   EXPECT_GT(budget.total.bound_95, budget.total.estimate);
   ASSERT_EQ(budget.targets.size(), 1U);
   EXPECT_EQ(budget.targets[0].name, "block");
@@ -83,8 +89,7 @@ TEST(ErrorBudget, PartsAddUpToTheWhole) {
 }
 
 TEST(ErrorBudget, ASurfaceThatEmitsAndReflectsCounts) {
-  // The bright wall sends out 50 lm/m^2 itself: its pixels count, and their luminance is without
-  // that.
+  // The bright wall emits 50 lm/m^2: its pixels count, with their luminance without this emission.
   const raytrace::RenderOptions options = small_picture(0.1);
   const raytrace::Frame frame = small_room().picture(options);
   std::size_t counted = 0;

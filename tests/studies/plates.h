@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plates seen from straight above: the scenes of which the studies' results are known.
+// Plates seen from straight above: scenes with known results of the studies.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace earthshine::tests {
 
-// At `height_m` over the origin, looking down; its picture spans `size_m` at z = 0.
+// At `height_m` above the origin, looking down; its picture spans `size_m` at z = 0.
 inline scenes::Camera above(double height_m, double size_m) {
   scenes::Camera camera;
   camera.name = "above";
@@ -38,9 +38,9 @@ inline SceneBuilder plate_on_ground(double ground_diffuse, double plate_diffuse)
   return builder;
 }
 
-// A plate of reflectance 0.5 under 1000 lx, which shows 500 / pi cd/m2, on black ground; 2 m seen
-// from 10 m in 16 pixels. Before the middle of a pixel a lamp that shines at the camera, 2000 times
-// as bright, and lights nothing.
+// A plate of reflectance 0.5 under 1000 lx, with 500 / pi cd/m2, on black ground; 2 m seen from 10
+// m in 16 pixels. In front of the centre of a pixel a lamp shines at the camera, 2000 times
+// brighter, and lights nothing.
 inline scenes::Scene plate_behind_a_speck(double radius_m) {
   SceneBuilder builder = plate_on_ground(0.0, 0.5);
   builder.scene.sun = overhead_sun(1000.0);
@@ -55,7 +55,7 @@ inline scenes::Scene plate_behind_a_speck(double radius_m) {
   return builder.scene;
 }
 
-// Direct light alone, with the layer "object".
+// Direct light only, with the layer "object".
 inline raytrace::Frame direct_picture(const scenes::Scene& scene, const scenes::Camera& camera,
                                       int size) {
   const Prepared prepared(scene);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small room of which pictures are quick.
+// A small room with fast pictures.
 #pragma once
 
 #include "radiosity/solution.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures that were stopped before anything was there, and those whose solve was broken off.
+// Pictures stopped before any sample, and pictures after an interrupted solve.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ const ReferencePair& truth() {
 struct Found {
   PictureError true_error;
   raytrace::ErrorEstimate stated;
-  std::size_t dark = 0;  // pixels that show a surface and no light
+  std::size_t dark = 0;  // pixels with a surface and without light
 };
 
 Found draw(const radiosity::Solution& solution, const raytrace::RenderOptions& options) {
@@ -61,8 +61,8 @@ Found draw(const radiosity::Solution& solution, const raytrace::RenderOptions& o
   return found;
 }
 
-// Pictures add what their solution lacks: of none that is all light between surfaces, nearly half
-// of the light in this room. What is asked for is stated, and is true.
+// Pictures add the residual of their solution. Without a solution this is all interreflection,
+// nearly half of the light in this room. The wanted error is stated and is true.
 TEST(StoppedPicture, WithoutASolutionItHasTheSameLight) {
   const scenes::World world = small_room().study();
   double bias = 0.0;
@@ -73,14 +73,13 @@ TEST(StoppedPicture, WithoutASolutionItHasTheSameLight) {
     EXPECT_LT(found.true_error.low, 1.5 * found.stated.bound_95) << seed;
     bias += found.true_error.bias / pictures;
   }
-  // The mean of a picture is known far better than its pixels, and that of the references too.
+  // The means of a picture and of the references are far more accurate than their pixels.
   EXPECT_NEAR(bias, 0.0, 0.01);
 }
 
-// Stopped before its first sample, a picture has one sample of each kind for 25 pixels of a
-// surface. Every pixel has light by those that serve it, the mean is that of the truth, and what is
-// stated is 0.8 to 1.5 times what it is off by, as pictures are meant to say (docs/accuracy.md):
-// 128 pictures of either kind, the root of the mean square.
+// A picture stopped before its first sample has one sample of each kind for 25 pixels of a surface.
+// Every pixel has light, and the mean is right. The stated error is 0.8 to 1.5 times the true one,
+// the goal for pictures (docs/accuracy.md): root mean square of 128 pictures of each kind.
 TEST(StoppedPicture, AtOnceItStatesWhatItIsOffBy) {
   const scenes::World world = small_room().study();
   for (const bool solved : {true, false}) {
@@ -103,7 +102,7 @@ TEST(StoppedPicture, AtOnceItStatesWhatItIsOffBy) {
   }
 }
 
-// Without denoising all gather points are sampled, and the statement is as true.
+// Without denoising all gather points are sampled, and the stated error is as accurate.
 TEST(StoppedPicture, WithoutDenoisingItStatesItsNoiseToo) {
   double true_square = 0.0, stated_square = 0.0;
   constexpr int pictures = 16;

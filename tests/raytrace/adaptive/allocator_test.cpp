@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How rounds of samples go on towards a wanted error, told by sums that are made up.
+// Rounds of samples toward a wanted error, for synthetic pixel sums.
 #include "raytrace/adaptive/allocator.h"
 
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@ namespace {
 
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
-// A grey picture of mean luminance 1, every pixel with 1024 samples of variance 1 to 3.5 and of one
-// ray; one more pixel, with 4 samples of variance 3.
+// A grey picture of mean luminance 1. Every pixel has 1024 samples of variance 1 to 3.5, each with
+// one ray; one more pixel has 4 samples of variance 3.
 PixelSums surprised() {
   constexpr double few = 4.0, many = 1024.0, bad = 3.0;
   PixelSums sums(Window{0, 0, 16, 16}, 1, false);
@@ -30,9 +30,8 @@ PixelSums surprised() {
   return sums;
 }
 
-// The pixel that stands out is half of the squared error, and twelve more samples of it, a 20 000th
-// of all, are all that a round would ask for: at that pace it would take a hundred rounds to double
-// the samples.
+// The noisy pixel has half of the squared error. Twelve more samples there, 1/20 000 of all, would
+// suffice for a round: at that pace it would take a hundred rounds to double the samples.
 TEST(Allocator, NoneCostsNextToNothing) {
   const PixelSums sums = surprised();
   SamplePlanner planner(sums, nullptr, {});
@@ -55,7 +54,7 @@ TEST(Allocator, NoneCostsMoreThanCanBeAfforded) {
   EXPECT_FALSE(rounds.gave_up());
 }
 
-// All pixels alike but for a little, with 1024 samples each.
+// Nearly equal pixels, with 1024 samples each.
 PixelSums alike() {
   PixelSums sums = surprised();
   sums.samples[0] = 1024;
@@ -70,9 +69,9 @@ PixelSums alike() {
   return sums;
 }
 
-// A quarter of the squared error takes four times the samples, by 1 / N and by the plan; a
-// sixteenth four times those, of which a plan, which gives a point four times its samples at most,
-// knows the first step.
+// A quarter of the squared error takes four times the samples, by 1 / N and by the plan. A
+// sixteenth takes sixteen times the samples; a plan, which at most quadruples a point's samples,
+// gives the first step only.
 TEST(Allocator, GrowthIsThatOfThePlanAndBeyondItOfTheSquare) {
   const PixelSums sums = alike();
   SamplePlanner planner(sums, nullptr, {});
@@ -87,7 +86,7 @@ TEST(Allocator, GrowthIsThatOfThePlanAndBeyondItOfTheSquare) {
   EXPECT_EQ(growth(4.0 * half), 1.0);
 }
 
-// Every pixel with as many samples of a variance of 1 about a mean of 1: off by 1 / sqrt(n).
+// Every pixel has the same number of samples with variance 1 and mean 1: its error is 1 / sqrt(n).
 PixelSums off_by(double error) {
   PixelSums sums(Window{0, 0, 16, 16}, 1, false);
   const double n = std::round(1.0 / (error * error));
@@ -103,11 +102,11 @@ PixelSums off_by(double error) {
   return sums;
 }
 
-// True errors of coarse pictures are at most 1.06 of what is stated, those of fine ones up to 1.1:
-// of 5 % a statement of 4.6 is enough and one of 4.8 is not, of 3 % one of 2.65 and not one
-// of 2.76. Initial samples, which follow no statement, are taken at their word. Each of 256
-// pixels is told by one difference d, all alike here: the sum of 2/3 d^4 of them is 2/3 / 256 of
-// the square of the sum of d^2, and 1.2816 of its root goes to the confidence factor.
+// True errors of coarse pictures are at most 1.06 of the stated ones, of fine pictures up to 1.1.
+// For a wanted error of 5 %, a stated 4.6 is enough and 4.8 is not; for 3 %, 2.65 is enough and
+// 2.76 is not. The stop fraction does not apply to the initial samples, which follow no statement.
+// Each of 256 pixels has one difference d, all equal here: the sum of 2/3 d^4 is 2/3 / 256 of the
+// squared sum of d^2, and 1.2816 of its root enters the confidence factor.
 const double factor_of_256 = std::sqrt(1.0 + 1.2816 * std::sqrt(2.0 / 3.0 / 256.0));
 TEST(Allocator, GoOnUntilTheErrorIsSure) {
   const auto goes_on = [](double wanted, double first, double second) {
@@ -115,7 +114,7 @@ TEST(Allocator, GoOnUntilTheErrorIsSure) {
     for (const double error : {first / factor_of_256, second / factor_of_256}) {
       const PixelSums sums = off_by(error);
       SamplePlanner planner(sums, nullptr, {});
-      // Half a sample more of n takes n^(-3/2) / 4 off 1 / sqrt(n).
+      // Half a sample, the rounding of n, changes 1 / sqrt(n) by n^(-3/2) / 4.
       EXPECT_NEAR(std::sqrt(planner.squared_error()), error, 0.26 * error * error * error);
       const bool more = rounds.next(planner, spent(sums, nullptr, {}), no_limit).has_value();
       if (!more) return false;
@@ -129,8 +128,9 @@ TEST(Allocator, GoOnUntilTheErrorIsSure) {
   EXPECT_FALSE(goes_on(0.05, 0.0499, 0.0499));
 }
 
-// Each round takes a sharing and a look, too: one goes to a quarter of the squared error, for three
-// times the samples so far, and no further, since what few samples say of many more is rough.
+// Each round costs a denoising step and an error statement. A round aims at a quarter of the
+// squared error, for three times the samples so far, and no further, since predictions from few
+// samples are rough.
 TEST(Allocator, OneGoesToAQuarterOfTheSquaredError) {
   const PixelSums sums = alike();
   SamplePlanner planner(sums, nullptr, {});
@@ -145,8 +145,8 @@ TEST(Allocator, OneGoesToAQuarterOfTheSquaredError) {
   }
 }
 
-// What is lacking may outweigh, by chance, all that there is: a mean of less than nothing has not
-// reached its error, whatever was asked for, but is off by 200 %.
+// Noise of the residual may make the mean negative. No wanted error is reached then: the error is
+// stated as 200 %.
 TEST(Allocator, APictureThatNoiseLeavesNothingOfGoesOn) {
   PixelSums sums = surprised();
   for (glm::vec3& light : sums.radiance) light = -light;
@@ -154,14 +154,14 @@ TEST(Allocator, APictureThatNoiseLeavesNothingOfGoesOn) {
   EXPECT_NEAR(planner.squared_error(), 4.0, 1e-12);
   EXPECT_TRUE(
       Allocator::to_error(1.0).next(planner, spent(sums, nullptr, {}), no_limit).has_value());
-  // Nor where all that it is off by is in one bright pixel, which counts whole.
+  // Nor if the whole error is in one bright pixel, which has full weight.
   sums.radiance[0] = glm::vec3(1e4F * 4.0F);
   sums.radiance[1] = glm::vec3(-1e5F * 1024.0F);
   sums.half_difference[0] = 1000.0 * 4.0;
   EXPECT_NEAR(SamplePlanner(sums, nullptr, {}).squared_error(), 4.0, 1e-12);
 }
 
-// All light comes straight from a source, up to the rounding of sums: nothing could be wrong.
+// All light comes straight from a source, up to the rounding of sums: there is no error.
 TEST(Allocator, RoundingOfASourceIsNoLightThatIsMissing) {
   PixelSums sums = surprised();
   for (std::size_t p = 0; p < sums.samples.size(); ++p) {
@@ -174,8 +174,7 @@ TEST(Allocator, RoundingOfASourceIsNoLightThatIsMissing) {
       Allocator::to_error(0.05).next(planner, spent(sums, nullptr, {}), no_limit).has_value());
 }
 
-// All initial samples at 4 % and less, half of it at more, and where a limit alone ends the
-// picture.
+// All initial samples at 4 % and below; half of them above 4 %, and without a wanted error.
 TEST(Allocator, InitialSamplingIsAsCoarseAsThePicture) {
   constexpr std::size_t points = 256 * 256;
   const InitialSampling full = Allocator::to_error(0.04).initial(points);
@@ -187,15 +186,15 @@ TEST(Allocator, InitialSamplingIsAsCoarseAsThePicture) {
   EXPECT_EQ(Allocator::to_error(0.01).initial(points).paths, full.paths);
 }
 
-// At half of the points where a picture is coarse, as long as their paths are 2^16.
+// At half of the points if the picture is coarse, provided they have 2^16 paths.
 TEST(Allocator, InitialSamplingAtEverySecondPointIsOfManyPointsAlone) {
   EXPECT_TRUE(Allocator::to_error(0.05).initial(1U << 16U).every_second);
   EXPECT_FALSE(Allocator::to_error(0.05).initial((1U << 16U) - 1).every_second);
   EXPECT_FALSE(Allocator::to_error(0.04).initial(1U << 20U).every_second);
 }
 
-// Light that one of ten thousand paths finds, of 2^15 some find but with a chance of exp(-3.3) = 4
-// %, however few the points.
+// Light that one of ten thousand paths finds: 2^15 paths all miss it with a probability of
+// exp(-3.3) = 4 %, however few the points.
 TEST(Allocator, InitialSamplingOfFewPointsIsOfManyPaths) {
   for (const std::size_t points : {std::size_t{1}, std::size_t{256}, std::size_t{5000}}) {
     EXPECT_GT(Allocator::to_error(0.5).initial(points).paths * points, 32768U);
@@ -216,7 +215,7 @@ TEST(Allocator, FixedNumbersHaveNoRounds) {
   EXPECT_FALSE(fixed.next(planner, spent(sums, nullptr, {}), no_limit).has_value());
 }
 
-// Of samples that know all noise, 1024 times as many leave 1/32 of it.
+// If the samples include all noise, 1024 times as many reduce the error to 1/32.
 TEST(Allocator, AnErrorThatWillNotFallIsHopeless) {
   EXPECT_FALSE(Allocator::is_hopeless({{1.0, 0.1}}));
   EXPECT_TRUE(Allocator::is_hopeless({{1.0, 0.1}, {1024.0, 0.06}}));
@@ -224,7 +223,7 @@ TEST(Allocator, AnErrorThatWillNotFallIsHopeless) {
   EXPECT_FALSE(Allocator::is_hopeless({{1.0, 0.1}, {1024.0, 0.05}}));
 }
 
-// What the first look missed counts from where it was found.
+// An error that the initial sampling missed counts from the statement that found it.
 TEST(Allocator, ASurpriseIsNotHopeless) {
   EXPECT_FALSE(Allocator::is_hopeless({{1.0, 0.1}, {4.0, 0.8}, {4096.0, 0.3}}));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the next camera samples of a picture go, told by sums that are made up.
+// Allocation of further camera samples, for synthetic pixel sums.
 #include "raytrace/adaptive/sample_plan.h"
 
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@ namespace {
 constexpr int edge = 16;
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
-// A grey picture of mean luminance 1 without noise, every pixel with as many samples, each of one
-// ray.
+// A noise-free grey picture of mean luminance 1. Every pixel has the same number of samples, each
+// with one ray.
 PixelSums quiet(std::uint32_t samples) {
   PixelSums sums(Window{0, 0, edge, edge}, 1, false);
   for (std::size_t p = 0; p < sums.samples.size(); ++p) {
@@ -28,7 +28,8 @@ PixelSums quiet(std::uint32_t samples) {
   return sums;
 }
 
-// Samples of the given variance, whose halves differ as if `alike` of that were left.
+// Gives a pixel samples of that variance. `alike`: squared difference of the halves, relative to
+// independent samples.
 void disturb(PixelSums& sums, std::size_t pixel, double variance, double alike = 1.0) {
   const double n = sums.samples[pixel];
   sums.luminance2[pixel] = n + variance * (n - 1.0);
@@ -49,14 +50,14 @@ TEST(SamplePlan, FewSamplesAreToldByTheNoisiestAround) {
   EXPECT_EQ(few.camera[sums.window.index(2, 2)], 4U);
 }
 
-// All samples left of an edge say 1, all right of it 3: of two in a pixel both may have missed what
-// lies beyond the edge. If that is as likely in this pixel as in the next, and a share f of the
-// pixel with all f alike, they are off by f (3 - 1) with a chance of (1 - f)^2:
+// All samples left of an edge are 1, all right of it 3. Two samples in a pixel may both miss the
+// part beyond the edge. If the edge is in this pixel or in the next with equal probability, and the
+// part beyond it has the share f, uniform, the error is f (3 - 1) with the probability (1 - f)^2:
 //   4 * 1/2 * integral of f^2 (1 - f)^2 = 4 / 60.
-// Pixels that are off by a tenth more come first, those off by a tenth less do not.
+// Pixels with an error larger by a tenth come first; pixels with one smaller by a tenth do not.
 TEST(SamplePlan, ContrastTellsOfAnEdgeThatSamplesMissed) {
   constexpr double missed = 4.0 / 60.0;
-  constexpr double each = 2.0 * 2.0;  // as many samples again, and their rays
+  constexpr double each = 2.0 * 2.0;  // doubled samples, each with a ray
   for (const double noise : {0.9, 1.1}) {
     PixelSums sums = quiet(2);
     for (std::size_t p = 0; p < sums.samples.size(); ++p) {
@@ -75,8 +76,8 @@ TEST(SamplePlan, ContrastTellsOfAnEdgeThatSamplesMissed) {
   }
 }
 
-// Where the error is so small, and samples so dear, that a ray's price is none in single precision,
-// pixels that need nothing still get nothing.
+// With so small an error and so expensive samples that the price of a ray underflows in single
+// precision, pixels without an error still get no samples.
 TEST(SamplePlan, NoErrorIsTooSmallToTellWhoNeedsNothing) {
   constexpr double dim = 4e-19;  // its square is still a normal number
   PixelSums sums = quiet(4);
@@ -91,8 +92,8 @@ TEST(SamplePlan, NoErrorIsTooSmallToTellWhoNeedsNothing) {
   EXPECT_EQ(least.camera[sums.window.index(2, 2)], 4U);
 }
 
-// With 256 samples what a pixel may have missed covers less than 1 of 64 of it: half of the
-// picture's squared error, that of the noisy pixel, goes by doubling its samples alone.
+// With 256 samples, missed parts cover less than 1/64 of a pixel. Half of the picture's squared
+// error disappears when only the noisy pixel doubles its samples.
 TEST(SamplePlan, ManySamplesSpeakForThemselves) {
   PixelSums sums = quiet(256);
   const std::size_t noisy = sums.window.index(8, 8);
@@ -104,8 +105,8 @@ TEST(SamplePlan, ManySamplesSpeakForThemselves) {
   EXPECT_EQ(many.camera[sums.window.index(9, 8)], 256U);
 }
 
-// Both halves of the picture are as noisy; samples of the left take ten rays each, those of the
-// right one. What is bought for the price of a tenth is bought on the right.
+// Both halves of the picture have equal noise; samples of the left half take ten rays each, those
+// of the right half one. A budget of a tenth of the cost goes to the right half.
 TEST(SamplePlan, CheapSamplesComeFirst) {
   PixelSums sums = quiet(64);
   for (std::size_t p = 0; p < sums.samples.size(); ++p) {
@@ -118,9 +119,10 @@ TEST(SamplePlan, CheapSamplesComeFirst) {
   EXPECT_EQ(cheap.camera[sums.window.index(13, 8)], 128U);
 }
 
-// Below, 1024 samples of a variance of 16384 would gain four times as much for their price as 16 of
-// variance 1 above (variance / samples^2), if they were independent. But their means are a hundred
-// times as exact (an edge that low-discrepancy samples resolve): they gain 25 times less.
+// In the lower half, 1024 samples of variance 16384 would gain four times as much for their price
+// as 16 of variance 1 in the upper half (variance / samples^2), if they were independent. But the
+// variance of their means is a hundred times less (an edge resolved by low-discrepancy samples):
+// they gain 25 times less.
 TEST(SamplePlan, SamplesThatScatterLessTogetherNeedFewer) {
   PixelSums sums = quiet(16);
   for (std::size_t p = 0; p < sums.samples.size(); ++p) {

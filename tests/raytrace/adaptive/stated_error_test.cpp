@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a picture's statement is worth that pixels' halves tell.
+// The confidence factor of an error that the halves of pixels state.
 #include "raytrace/adaptive/stated_error.h"
 
 #include <gtest/gtest.h>
@@ -19,8 +19,8 @@ StatedError grey(std::size_t pixels) {
   return stated;
 }
 
-// Of n pixels alike the mean of d^2 scatters by the root of 2/3 n d^4 over n; once in ten times
-// normal noise is off by more than 1.2816 of that. A pixel that is off by nothing changes nothing.
+// For n equal pixels the mean of d^2 has the standard error sqrt(2/3 n d^4) / n; normal noise
+// exceeds 1.2816 standard errors once in ten times. Pixels without an error change nothing.
 TEST(Doubt, IsThatOfThePixelsThatHoldTheError) {
   for (const std::size_t n : {1U, 100U}) {
     StatedError stated = grey(200);
@@ -31,10 +31,10 @@ TEST(Doubt, IsThatOfThePixelsThatHoldTheError) {
   EXPECT_EQ(add_up(grey(200)).confidence_factor, 1.0);
 }
 
-// Halves of normal noise of variance 1 in 2500 pixels: once in ten times the true error, 1, is more
-// than what is stated and its confidence_factor. 4000 pictures tell that to the root of 0.1 * 0.9 /
-// 4000; the sum of 2500 squares has a skewness g of the root of 8 / 2500, and over a spread that is
-// told by the same squares that adds phi(z) (2 z^2 + 1) / 6 g, phi the normal density.
+// Half differences of normal noise of variance 1 in 2500 pixels: once in ten times the true error,
+// 1, exceeds the stated error times its confidence_factor. 4000 pictures measure this to
+// sqrt(0.1 * 0.9 / 4000). The sum of 2500 squares has a skewness g = sqrt(8 / 2500). With a
+// standard error from the same squares, this adds phi(z) (2 z^2 + 1) / 6 g, phi the normal density.
 TEST(Doubt, IsExceededOnceInTenTimes) {
   constexpr int pictures = 4000;
   constexpr std::size_t pixels = 2500;

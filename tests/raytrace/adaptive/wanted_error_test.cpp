@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where pictures of a wanted error end.
+// The errors at which pictures of a wanted error end.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,10 +11,10 @@
 namespace earthshine::raytrace {
 namespace {
 
-// What is left by samples that went where errors looked large is up to 1.1 times what they state:
-// the wanted error is reached where 0.9 of it is stated, or, above 4 %, 0.94. What the first look
-// states is more than there is, so that all of it will do. Of either as much as few pixels put in
-// doubt goes off.
+// Samples went where errors looked large, so that the true error is up to 1.1 times the stated one:
+// the wanted error is reached at a stated 0.9 of it, or 0.94 above 4 %. The initial sampling states
+// more than the true error, so that the full wanted error suffices. The confidence factor reduces
+// both.
 TEST(WantedError, RoundsThatChoseWhereToSampleStateLessThanIsWanted) {
   tests::SceneBuilder builder;
   const std::uint32_t grey = builder.material(tests::grey(0.5));
@@ -38,7 +38,7 @@ TEST(WantedError, RoundsThatChoseWhereToSampleStateLessThanIsWanted) {
     return sums.confidence_factor * std::sqrt(sums.squared_error());
   };
   const double initial = stated(1.0);
-  // The witness may ask for a few samples more or less.
+  // The witness may request a few samples more or less.
   EXPECT_NEAR(stated(1.01 * initial), initial, 0.02 * initial);
   for (const double wanted : {0.95, 0.85, 0.7, 0.5}) {
     const double error = wanted * initial;

@@ -66,7 +66,7 @@ TEST(CameraCheck, WindingNumberIsOneInsideZeroOutsideAndMinusOneInARoom) {
 }
 
 TEST(CameraCheck, OpenSurfaceWindsByItsSolidAngle) {
-  // From the middle of a cube each face takes a sixth of the sphere.
+  // From the centre of a cube each face takes a sixth of the sphere.
   Place place;
   place.box("tub", Vec3(0), Vec3(1), place.builder.material(tests::grey(0.5)), Faces::Outward,
             false);
@@ -84,7 +84,7 @@ TEST(CameraCheck, CameraInsideABodyIsRefusedByTheBodysName) {
 }
 
 TEST(CameraCheck, CameraInsideABodyThatHoldsSomethingIsStillRefused) {
-  // Some rays meet the inner box's front; the tank's backs are most of what is seen.
+  // Some rays meet the inner box's front; most meet the tank's backs.
   Place place;
   const std::uint32_t m = place.builder.material(tests::grey(0.5));
   place.box("tank", Vec3(0), Vec3(1), m);
@@ -121,7 +121,7 @@ TEST(CameraCheck, RoomsHullsBaysGlassAndOpenSkyArePlacesToLookFrom) {
     EXPECT_EQ(walls.verdict(eye), "");
   }
   {
-    // The hull winds once around the camera, but all that is seen is the lining.
+    // The hull winds once around the camera, but only the lining is visible.
     Place hull;
     const std::uint32_t m = hull.builder.material(tests::grey(0.5));
     hull.box("hull", Vec3(-0.1), Vec3(1.1), m);

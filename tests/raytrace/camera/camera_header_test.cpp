@@ -18,7 +18,7 @@ Columns4 times(const std::array<double, 16>& m, const Columns4& v) {
   return r;
 }
 
-// v M, as OpenEXR has it, in single precision as the file holds it.
+// v M, as in OpenEXR, in the single precision of the file.
 Columns4 times(const Columns4& v, const std::array<double, 16>& m) {
   Columns4 r{};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -33,7 +33,7 @@ struct Shot {
   Vec3 position;
 };
 
-// Cameras within 10 m of the origin looking anywhere, and points on rays through their pixels.
+// Cameras within 10 m of the origin in random directions, and points on rays through their pixels.
 std::vector<Shot> shots() {
   std::vector<Shot> all;
   base::Rng rng(base::Key(1, base::Stream::Test, 0));
@@ -59,7 +59,7 @@ std::vector<Shot> shots() {
   return all;
 }
 
-// K and to_world undo the camera's own ray: pixel -> ray -> point -> pixel.
+// K and to_world invert the camera's ray: pixel -> ray -> point -> pixel.
 TEST(CameraHeader, ComputerVisionMatricesProjectAPointToItsPixel) {
   for (const Shot& shot : shots()) {
     const CameraMatrices m = camera_matrices(shot.camera);
@@ -91,8 +91,8 @@ TEST(CameraHeader, PoseIsARightHandedRotationAndTheCamerasPlace) {
   }
 }
 
-// The file holds single precision: 2^-24 of some 20 m at 2 m and 250 pixels is 1.5e-4 pixels at
-// most, a few terms of it.
+// The file has single precision: 2^-24 of some 20 m at 2 m and 250 pixels is 1.5e-4 pixels at most,
+// a few times that in sum.
 TEST(CameraHeader, StandardMatricesProjectAPointToItsPlaceOnTheScreen) {
   for (const Shot& shot : shots()) {
     const CameraMatrices m = camera_matrices(shot.camera);

@@ -55,8 +55,8 @@ TEST(Camera, EveryPointOfTheLensSeesTheSamePointInFocus) {
   }
 }
 
-// Points along a ray are seen where it began, through the same point of the lens; and a pixel's
-// square, carried to a plane by four rays, has the area there that film_per_m2 says.
+// Points along a ray project to the ray's film position, through the same point of the lens. A
+// pixel's square, projected to a plane by four rays, has the area of film_per_m2 there.
 TEST(Camera, FilmIsWhereRaysCameFrom) {
   for (const double aperture : {0.0, 0.2}) {
     scenes::Camera camera;
@@ -83,9 +83,8 @@ TEST(Camera, FilmIsWhereRaysCameFrom) {
 }
 
 TEST(Camera, BlurCircleFollowsTheThinLens) {
-  // A point at distance z seen through a lens of diameter A focused at s spreads over A |z - s| / z
-  // at the plane z = ... in object space: the pencil through it is A |s - z| / z wide at the plane
-  // in focus.
+  // A point at distance z seen through a lens of diameter A focused at s: its pencil is
+  // A |s - z| / z wide in the plane in focus.
   scenes::Camera lens = looking_down_x();
   lens.focus_m = 4.0;
   lens.aperture_m = 0.2;

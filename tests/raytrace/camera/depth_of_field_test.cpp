@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The thin lens of diameter A focused at s. A lens point p (across the axis) and the picture point
-// with tangents q see the lateral position p + (s q - p) d / s at distance d. The point X there is
-// therefore seen, through p, at q = X/d + p (1/s - 1/d): a uniform disc of diameter A |d - s| / (d
-// s) around its pinhole image, upside down behind the focus. With f' the distance from picture to
-// lens in pixels (rows / (2 tan(fov/2))) the blur circle has A f' |d - s| / (d s) pixels.
+// with tangents q see the lateral position p + (s q - p) d / s at distance d. Hence the point X
+// there is seen, through p, at q = X/d + p (1/s - 1/d): a uniform disc of diameter A |d - s| / (d
+// s) around its pinhole image, inverted behind the focus. With f' the distance from picture to lens
+// in pixels (rows / (2 tan(fov/2))) the blur circle has A f' |d - s| / (d s) pixels.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -34,7 +34,7 @@ double blur_px(const CameraModel& model, double aperture_m, double focus_m, doub
   return aperture_m * focal_px * std::fabs(distance_m - focus_m) / (distance_m * focus_m);
 }
 
-// Where the ray through (x, y) and a lens point passes the plane at that distance.
+// The point of the ray through (x, y) and a lens point at that distance.
 Vec3 at_distance(const CameraModel& model, double x, double y, std::array<double, 2> on_lens,
                  double distance_m) {
   const Ray ray = model.ray(x, y, on_lens[0], on_lens[1]);
@@ -78,8 +78,8 @@ TEST(DepthOfField, PointOutOfFocusIsAUniformDiscOfTheThinLensDiameter) {
     const double radius = diameter / 2;
     EXPECT_LE(largest, radius * (1.0 + 1e-9));
     EXPECT_GT(largest, radius * 0.999);
-    // Half the radius holds a quarter of the disc; per axis the disc has mean 0, variance R^2/4 and
-    // variance of the square R^4/16.
+    // Half the radius contains a quarter of the disc; per axis the disc has mean 0, variance R^2/4
+    // and variance of the square R^4/16.
     EXPECT_NEAR(inner, 0.25, 4.0 * std::sqrt(0.25 * 0.75 / n));
     for (const std::size_t axis : {0U, 1U}) {
       EXPECT_NEAR(mean[axis], 0.0, 4.0 * radius / 2.0 / std::sqrt(n));
@@ -150,9 +150,8 @@ TEST(DepthOfField, RenderedSpotSpreadsOverTheBlurCircleAndKeepsItsLight) {
   camera.focus_m = camera.aperture_m = 0.0;
   const Spot pinhole = spot(camera, distance, side, edge_px);
 
-  // 64 samples a pixel over 1.44 px^2 of light that went somewhere: 92 samples hit if they are
-  // random, and Sobol points do better. Light: 1/sqrt(n); variance per axis R^2/4/sqrt(n), of two
-  // axes.
+  // 64 samples a pixel for 1.44 px^2 of light: 92 random samples hit it, and Sobol points have less
+  // variance. Light: 1/sqrt(n); variance per axis R^2/4/sqrt(n), of two axes.
   const double hits = 64.0 * 1.44, radius = 10.0;
   EXPECT_NEAR(blurred.light / pinhole.light, 1.0, 4.0 / std::sqrt(hits));
   EXPECT_NEAR(blurred.variance_px2, radius * radius / 4.0 + 0.12 + 1.0 / 12.0,

@@ -16,10 +16,10 @@ struct Row {
   double variance;  // closed form, of width 1
 };
 
-// Triangle of full width w: w^2/24. Gaussian of s = w/6 cut at 3 s: s^2 (1 - 2 z p(z) / (2 P(z) -
-// 1)), z = 3, p and P the normal density and distribution. Blackman-Harris: the integral of x^2 cos
-// (2 pi k x/w) over the support is w^3 (-1)^k / (2 pi^2 k^2), that of 1 is w^3/12, and only a0 has
-// weight.
+// Triangle of full width w: w^2/24. Gaussian of s = w/6 cut at 3 s:
+// s^2 (1 - 2 z p(z) / (2 P(z) - 1)), z = 3, p and P the normal density and distribution.
+// Blackman-Harris: the integral of x^2 cos (2 pi k x/w) over the support is w^3 (-1)^k / (2 pi^2
+// k^2), for k = 0 w^3/12, and only a0 contributes to the integral of the filter.
 double gaussian_variance() {
   const double z = 3.0, density = std::exp(-z * z / 2) / std::sqrt(2.0 * base::pi);
   return (1.0 - 2.0 * z * density / std::erf(z / std::sqrt(2.0))) / 36.0;
@@ -72,14 +72,14 @@ INSTANTIATE_TEST_SUITE_P(Of, Filters,
                                                blackman_harris_variance()}));
 
 TEST(PixelFilter, BlackmanHarrisSharesAreItsIntegral) {
-  // The share of the window below x is what maps to x; checked at a quarter of the width, where
-  // t = pi/2: (a0 pi/2 + a1 - a3/3 + a0 pi) / (2 pi a0).
+  // u maps to the x with the integral u below it; at a quarter of the width, where t = pi/2: (a0
+  // pi/2 + a1 - a3/3 + a0 pi) / (2 pi a0).
   const double a0 = 0.35875, a1 = 0.48829, a3 = 0.01168;
   const double share = (1.5 * base::pi * a0 + a1 - a3 / 3.0) / (2.0 * base::pi * a0);
   EXPECT_NEAR(PixelFilter(FilterShape::BlackmanHarris, 4.0).offset(share, 0.5)[0], 1.0, 1e-6);
 }
 
-// A share du of the offsets lies within d(offset), one axis at a time: density = du / d(offset).
+// A share du of the offsets is within d(offset), one axis at a time: density = du / d(offset).
 TEST(PixelFilter, DensityIsThatOfTheOffsets) {
   for (const FilterShape shape : {FilterShape::Box, FilterShape::Triangle, FilterShape::Gaussian,
                                   FilterShape::BlackmanHarris}) {
@@ -97,7 +97,7 @@ TEST(PixelFilter, DensityIsThatOfTheOffsets) {
 TEST(PixelFilter, BoxOfOnePixelIsThePixelExactly) {
   const PixelFilter filter((scenes::Camera()));
   for (const float u : {0.0F, 0.1F, 0.7654321F, 0.99999994F}) {
-    // Bit for bit: pictures made before there was a choice stay as they are.
+    // Bit for bit: older pictures stay the same.
     EXPECT_EQ(17 + 0.5 + filter.offset(double(u), 0.0)[0], 17 + double(u));
   }
 }

@@ -35,7 +35,7 @@ std::vector<WireSegment> seen(const scenes::Scene& scene, const scenes::Camera& 
                       make_camera_model(camera, edge_px, edge_px));
 }
 
-// All quads as one object, which is what a box from a file is.
+// Joins all quads to one object, as in a box from a file.
 void join(scenes::Scene& scene) {
   for (scenes::Triangle& t : scene.triangles) t.object = 0;
 }
@@ -65,7 +65,7 @@ TEST(Wire, BordersAndChangesOfMaterialAreEdgesAndSeamsOfAFlatFaceAreNot) {
 }
 
 TEST(Wire, EdgesLieWhereTheCamerasOwnRaysMeetThem) {
-  // Every end of every segment is a point of the picture whose ray passes within a hair of a box
+  // Every end of every segment is a point of the picture whose ray passes within 1e-9 of a box
   // edge.
   tests::SceneBuilder builder;
   tests::add_box(builder, builder.material(tests::grey(0.5)), Vec3(0), Vec3(1));
@@ -100,7 +100,7 @@ TEST(Wire, BoxShowsTheNineEdgesOfItsThreeVisibleFaces) {
     const double z = glm::dot(d, model.forward) * model.half_height;
     return glm::dvec2(glm::dot(d, model.right), -glm::dot(d, model.up)) * (100.0 / z);
   };
-  // Faces x = 1, y = 0 and z = 1 are seen; the three edges at (0, 1, 0) are not.
+  // Faces x = 1, y = 0 and z = 1 are visible; the three edges at (0, 1, 0) are not.
   double expected = 0.0;
   for (const FeatureEdge& e : feature_edges(builder.scene, 30.0)) {
     const Vec3 hidden(0, 1, 0);
@@ -113,9 +113,9 @@ TEST(Wire, BoxShowsTheNineEdgesOfItsThreeVisibleFaces) {
 }
 
 TEST(Wire, LineIsCutWhereAPlateHidesIt) {
-  // A plate at half the distance hides of what is behind it a stretch of twice its size. The camera
-  // is at height 4 over a square of side 2, f' = 100 / tan 20 deg = 274.7 px; the plate of side 0.4
-  // at height 2 lies over the middle of the square's edge y = -1.
+  // A plate at half the distance hides a segment of twice its size. The camera is at height 4 above
+  // a square of side 2, f' = 100 / tan 20 deg = 274.7 px; the plate of side 0.4 at height 2 covers
+  // the middle of the square's edge y = -1.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.plate(m, 2.0, 0.0, true);
@@ -158,7 +158,7 @@ TEST(Wire, EdgesBehindAndBesideTheCameraAreLeftOut) {
   builder.plate(m, 2.0, 0.0, true);
   EXPECT_TRUE(seen(builder.scene, camera_at({0, 0, 4}, {0, 0, 8})).empty());
   EXPECT_TRUE(seen(builder.scene, camera_at({50, 0, 4}, {50, 0.001, 0})).empty());
-  // Two sides run past the camera: cut at the picture's border, no ends from behind it.
+  // Two sides extend behind the camera: clipped at the picture's border, without ends from behind.
   const auto segments = seen(builder.scene, camera_at({0, 0, 0.2}, {1, 0, 0.1}, 60.0));
   EXPECT_FALSE(segments.empty());
   for (const WireSegment& s : segments) {

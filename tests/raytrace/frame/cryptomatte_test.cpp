@@ -15,8 +15,8 @@ namespace {
 
 float id_value(std::string_view name) { return std::bit_cast<float>(cryptomatte_id(name)); }
 
-// Appleby's algorithm with seeds and lengths of every remainder; values of the reference C++ code
-// as collected in public test suites.
+// Appleby's algorithm for seeds and lengths with every remainder; values of the reference C++ code
+// from public test suites.
 TEST(Cryptomatte, HashIsMurmur3ForEveryLengthAndSeed) {
   EXPECT_EQ(murmur3_32(""), 0U);
   EXPECT_EQ(murmur3_32("", 1), 0x514E28B7U);
@@ -42,7 +42,7 @@ TEST(Cryptomatte, IdsAreThoseOfThePublishedTests) {
                   6.2361298211599995797e+25F);
 }
 
-// The manifests that the specification prints, and keys of layers as Arnold and Nuke write them.
+// The manifests in the specification, and keys of layers as Arnold and Nuke write them.
 TEST(Cryptomatte, HexIsThatOfPublishedManifestsAndKeys) {
   EXPECT_EQ(eight_hex_digits(cryptomatte_id("bunny")), "13851a76");
   EXPECT_EQ(eight_hex_digits(cryptomatte_id("default")), "42c9679f");
@@ -52,7 +52,7 @@ TEST(Cryptomatte, HexIsThatOfPublishedManifestsAndKeys) {
   EXPECT_EQ(eight_hex_digits(cryptomatte_id("uCryptoAsset")).substr(0, 7), "d593dd7");
 }
 
-// Of 2^8 exponents two are refused: among 4096 names some 32 need the fix, and all ids are normal.
+// Two of 2^8 exponents are invalid: about 32 of 4096 names need the fix, and all ids are normal.
 TEST(Cryptomatte, EveryIdIsAFiniteNormalNumber) {
   int turned = 0;
   for (int i = 0; i < 4096; ++i) {
@@ -69,7 +69,7 @@ TEST(Cryptomatte, RanksGoByCoverageAndTiesByIdInWhateverOrderSamplesCome) {
   CoverageRanks forwards, backwards;
   for (const std::uint32_t id : samples) forwards.add(id, 1.0);
   for (auto id = samples.rbegin(); id != samples.rend(); ++id) backwards.add(*id, 1.0);
-  const CryptomattePixel pixel = forwards.take(8.0);  // one sample of eight met the sky
+  const CryptomattePixel pixel = forwards.take(8.0);  // one sample of eight hit the sky
   EXPECT_EQ(pixel, backwards.take(8.0));
   const std::uint32_t order[] = {5, 7, 3, 9};
   const float coverage[] = {3.0F / 8, 2.0F / 8, 1.0F / 8, 1.0F / 8};
@@ -78,10 +78,11 @@ TEST(Cryptomatte, RanksGoByCoverageAndTiesByIdInWhateverOrderSamplesCome) {
     EXPECT_EQ(pixel[4 + 2 * rank], coverage[rank]);
   }
   for (std::size_t c = 3 + 8; c < pixel.size(); ++c) EXPECT_EQ(pixel[c], 0.0F);
-  EXPECT_EQ(forwards.take(1.0), CryptomattePixel{});  // it began anew
+  EXPECT_EQ(forwards.take(1.0), CryptomattePixel{});  // take() has reset it
 }
 
-// Coverages sum to 1 less the share of samples that met nothing; beyond six ids the smallest go.
+// Coverages sum to 1 minus the share of samples without a hit; beyond six ids the smallest are
+// dropped.
 TEST(Cryptomatte, CoveragesSumToOneLessTheSky) {
   scenes::Scene scene;
   for (std::uint32_t k = 0; k < 8; ++k) {

@@ -12,9 +12,9 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Two layers at two places whose parts of the error are 0.01 of the sum of all, by the first
-// place's noise in the first layer alone, and 0.04, by the second's in the second alone. Weight 0
-// takes a layer's noise and its light away.
+// Two layers at two places. The squared errors of the sum of all layers are 0.01, from noise of the
+// first layer at the first place, and 0.04, from noise of the second layer at the second place.
+// Weight 0 removes a layer's noise and its light.
 TEST(LayerErrors, EachPartIsScaledByItsOwnNoise) {
   LayerErrors errors;
   errors.luminance = {3.0, 1.0};
@@ -34,7 +34,7 @@ TEST(LayerErrors, EachPartIsScaledByItsOwnNoise) {
   EXPECT_FALSE(of(0.0, 0.0));
 }
 
-// Told by one place alone, 0.01 of the sum of all.
+// Data of a single place, with 0.01 of the sum of all layers.
 LayerErrors errors_of_one_place(const std::array<double, 2>& mean, const std::array<float, 2>& off,
                                 const std::array<float, 2>& there) {
   LayerErrors errors;
@@ -46,24 +46,24 @@ LayerErrors errors_of_one_place(const std::array<double, 2>& mean, const std::ar
   return errors;
 }
 
-// Noise of both layers at one place goes together: (0.5 + 2 * 0.25)^2 of 0.75^2 in all.
+// Noise of both layers at one place is correlated: (0.5 + 2 * 0.25)^2 over 0.75^2 for all layers.
 TEST(LayerErrors, NoiseOfAWeightedSumIsThatOfItsDifferences) {
   const LayerErrors errors = errors_of_one_place({1.0, 1.0}, {0.5F, 0.25F}, {1.0F, 1.0F});
   EXPECT_NEAR(errors.of(std::array<double, 2>{1.0, 2.0})->relative(), 0.1 * 2.0 / 3.0 * 1.0 / 0.75,
               1e-12);
 }
 
-// Of the sum of both layers the place has the mean luminance and counts whole; of the first alone
-// it has 40 times the mean, and its noise counts a tenth.
+// In the sum of both layers the place has the mean luminance and full weight. In the first layer it
+// has 40 times the mean and a weight of 1/10.
 TEST(LayerErrors, WhereASumIsBrightItsNoiseCountsInProportion) {
   const LayerErrors errors = errors_of_one_place({0.1, 3.9}, {0.5F, 0.0F}, {4.0F, 0.0F});
   EXPECT_NEAR(errors.of(std::array<double, 2>{1.0, 0.0})->relative(), 0.1 * 4.0 / 0.1 * 0.1, 1e-6);
 }
 
-// A room by two lamps, one behind a plate, and a small one beside a wall, whose spot is a hundred
-// times as bright as the rest: what is stated of each alone, and of a sum, is what pictures of
-// other seeds differ by, bright pixels in proportion. Squares averaged over pairs of seeds, within
-// four standard errors; nothing is shared, which would take its part of the noise.
+// A room with two lamps, one behind a plate, and a small lamp beside a wall, whose spot is a
+// hundred times brighter than the rest. The stated error of each layer, and of a sum, equals the
+// difference between seeds, with reduced weight for bright pixels. Squares averaged over pairs of
+// seeds, within four standard errors; without denoising, which would remove its part of the noise.
 TEST(LayerErrors, StatedOfASumIsWhatOtherSeedsDifferBy) {
   tests::SceneBuilder builder;
   const std::uint32_t grey = builder.material(tests::grey(0.5));
@@ -105,7 +105,7 @@ TEST(LayerErrors, StatedOfASumIsWhatOtherSeedsDifferBy) {
   constexpr std::array<const char*, 3> names = {"light_left.G", "light_right.G", "light_spot.G"};
   const std::array<std::array<double, 3>, 4> sums = {
       {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {1.0, 3.0, 1.0}, {0.0, 0.0, 1.0}}};
-  std::array<std::vector<double>, 4> off;  // found less stated, squared
+  std::array<std::vector<double>, 4> off;  // squared differences minus stated squares
   std::array<double, 4> stated{};
   for (std::uint64_t k = 0; k < pairs; ++k) {
     const Frame one = drawn(2 * k + 1), other = drawn(2 * k + 2);
@@ -141,9 +141,9 @@ TEST(LayerErrors, StatedOfASumIsWhatOtherSeedsDifferBy) {
   }
 }
 
-// Of a picture that goes on to an error, whose rounds add up: the same of the two lamps together
-// and of each. Only the upper bound is a law: later samples go where the sum of all needs them,
-// which takes more off it than off its parts.
+// The same for a picture drawn to an error, whose rounds add up: for the two lamps together and for
+// each. Only the upper bound is a law: later samples go where the sum of all layers needs them,
+// which reduces its error more than the layers' errors.
 TEST(LayerErrors, StatedOfASumHoldsRoundAfterRound) {
   tests::SceneBuilder builder;
   const std::uint32_t grey = builder.material(tests::grey(0.5));
@@ -178,7 +178,7 @@ TEST(LayerErrors, StatedOfASumHoldsRoundAfterRound) {
   };
   constexpr std::uint64_t pairs = 12;
   const std::array<std::array<double, 2>, 3> sums = {{{1.0, 1.0}, {1.0, 0.0}, {0.0, 1.0}}};
-  std::array<std::vector<double>, 3> off;  // found less stated, squared
+  std::array<std::vector<double>, 3> off;  // squared differences minus stated squares
   for (std::uint64_t k = 0; k < pairs; ++k) {
     const Frame one = drawn(2 * k + 1), other = drawn(2 * k + 2);
     const std::size_t pixels = one.image.pixel_count();
@@ -212,9 +212,9 @@ TEST(LayerErrors, StatedOfASumHoldsRoundAfterRound) {
   }
 }
 
-// Two regions of a picture of four columns. The mean over the first, of two pixels, takes half of
-// the noise of each of its places; a place that serves four pixels, three of them in the second
-// region of four, three quarters of its own, and rounds of one place add up.
+// Two regions of a picture with four columns. The mean over the first, of two pixels, has half of
+// the noise of each of its places. A place that serves four pixels, three of them in the second
+// region of four, contributes three quarters of its noise. Rounds of one place add up.
 TEST(RegionNoise, VarianceOfAMeanIsThatOfIndependentPlaces) {
   LayerErrors errors;
   errors.luminance = {1.0, 1.0};
@@ -232,8 +232,8 @@ TEST(RegionNoise, VarianceOfAMeanIsThatOfIndependentPlaces) {
   EXPECT_NEAR(variances[1], std::pow(0.75 * 2.0, 2), 1e-9);
 }
 
-// One gather point for four pixels: the picture of a room by a lamp differs from that with a point
-// for each by no more than both state, four standard errors of the mean.
+// One gather point for four pixels: the picture of a room with a lamp differs from one with a point
+// per pixel by no more than both stated errors, within four standard errors of the mean.
 TEST(GatherStep, ACoarserFieldShowsTheSameLight) {
   tests::SceneBuilder builder;
   const std::uint32_t grey = builder.material(tests::grey(0.5));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a first look at a coarse picture samples, and what it leaves to neighbours and to later
+// The initial sampling of a coarse picture, and the points that it leaves to neighbours and later
 // rounds.
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 constexpr int edge_px = 96;
 
-// A room lit by one of its walls. There may be a sheet in the middle.
+// A room lit by one of its walls, with or without a sheet in the middle.
 scenes::Scene room(bool has_sheet) {
   tests::SceneBuilder builder;
   const std::uint32_t grey = builder.material(tests::grey(0.5));
@@ -28,7 +28,7 @@ scenes::Scene room(bool has_sheet) {
   return builder.scene;
 }
 
-// Chips of about a pixel float in it, each at a height of its own.
+// Chips of about a pixel float in it, each at its own height.
 scenes::Scene room_with_chips() {
   tests::SceneBuilder builder;
   builder.scene = room(false);
@@ -40,7 +40,7 @@ scenes::Scene room_with_chips() {
   return builder.scene;
 }
 
-// Seen from a corner: what is off is mostly what is gathered.
+// Seen from a corner: the error is mostly due to gathering.
 struct Looked {
   explicit Looked(bool denoised, scenes::Scene seen = room(false), std::uint64_t of_seed = 1)
       : denoise(denoised), seed(of_seed), scene(std::move(seen)) {}
@@ -70,14 +70,14 @@ struct Looked {
     of_a_coarse_picture.initial_sampling_pixels = 1U << 16U;
     return of_a_coarse_picture;
   }();
-  // What is sampled points at what it was sampled with.
+  // `sampled` has pointers to these.
   scenes::World world = prepared;
   ShadingSetup setup{world, solution, camera, options};
   RenderReport report;
   Sampled sampled =
       sample_picture(setup.shared(), setup.world(), setup.camera(), options, {}, report);
   [[nodiscard]] const GatherField& field() const { return *sampled.field; }
-  // Whether a first look is to leave that pixel out.
+  // Whether the initial sampling skips that pixel.
   [[nodiscard]] bool leaves(std::size_t pixel) const {
     const int x = static_cast<int>(pixel % edge_px), y = static_cast<int>(pixel / edge_px);
     return (x + y) % 2 != 0 && field().is_interior(x, y);
@@ -116,11 +116,10 @@ TEST(InitialSampling, LeavesEverySecondPixelOfASurfaceToThoseBesideIt) {
 }
 
 TEST(InitialSampling, SharpLobesGetMoreRays) {
-  // Two surfaces: a wall whose lobe is wide, and a plate with a narrow one whose peak is 40 times
-  // as high. Where the camera sees both, few pixels show the plate, so that the mean is nearer to
-  // the wall's: the plate gets as many times two rays as its lobe reflects more than the mean, down
-  // to a power of two and at most 32 times, and the wall no more than two. Every second pixel
-  // where no edge is near has none.
+  // Two surfaces: a wall with a wide lobe, and a plate with a narrow one whose peak is 40 times
+  // higher. If the camera sees both, few pixels show the plate, so that the mean is closer to the
+  // wall's. The plate gets two rays times the ratio of its lobe to the mean, rounded down to a
+  // power of two, at most 32; the wall gets two. Every second interior pixel has none.
   tests::SceneBuilder builder;
   scenes::Material wide = tests::grey(0.5, 1.0), sharp = tests::grey(0.1);
   wide.specular = Rgb(0.1);
@@ -163,7 +162,7 @@ TEST(InitialSampling, SharpLobesGetMoreRays) {
   EXPECT_GT(left_out, edge_px * edge_px / 3);
 }
 
-// Far from all else, too, as on the wall behind the border of a sheet.
+// Also far from all other surfaces, as on the wall behind the border of a sheet.
 TEST(InitialSampling, RaysBesideEdgesStartAllOverThePixel) {
   const Looked at_sheet(0.25, room(true));
   const GatherField& field = at_sheet.field();
@@ -184,9 +183,9 @@ TEST(InitialSampling, RaysBesideEdgesStartAllOverThePixel) {
   EXPECT_GT(alone, edge_px);
 }
 
-// What sharing blurs there goes to nothing as that of all others does: where squared error has a
-// price, such points get the fewest samples of their own, or four times as many. An eighth of all
-// pixels at least, within four standard errors of the mean over twelve seeds: chance decides where.
+// The blur there vanishes as everywhere else: at a price of squared error, such points get the
+// fewest samples or four times as many. At least an eighth of all pixels, within four standard
+// errors of the mean over twelve seeds, because chance selects them.
 TEST(InitialSampling, WhatItLeavesOutIsSampledByRounds) {
   constexpr double seeds = 12.0;
   std::array<double, 2> sum{}, squared{};
@@ -214,9 +213,9 @@ TEST(InitialSampling, WhatItLeavesOutIsSampledByRounds) {
   }
 }
 
-// Points that stand alone are sampled by likely noise: three in four at least of those whose halves
-// agree so well by chance that what is likely is ten times what they state. By what they state
-// alone one in five would be.
+// Isolated points are sampled by likely noise: at least three in four of those whose halves agree
+// so well by chance that the likely noise is ten times the stated one. With the stated noise, one
+// in five would be.
 TEST(InitialSampling, HalvesThatAgreeByChanceAreLookedAtAgain) {
   int agree = 0, sampled = 0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {

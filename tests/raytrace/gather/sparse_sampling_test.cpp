@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is sampled where a stop leaves no time for a first look.
+// Sampling after a stop that leaves no time for the initial sampling.
 #include <gtest/gtest.h>
 
 #include "raytrace/render.h"
@@ -9,10 +9,10 @@ namespace earthshine::raytrace {
 namespace {
 
 TEST(QuickLook, SparesWhatIsSeenInMirrors) {
-  // A furnace, rho 0.8 and M = 0.2, of which one wall is a mirror: radiance 1 / pi in every pixel.
-  // What a mirror shows is all of off-grid points, of which the few that are sampled stand for the
-  // others: each has four of them among 7 x 7 pixels, so that about one in six is. Of the first
-  // look there are at most a quarter of the rays, then.
+  // A furnace, rho 0.8 and M = 0.2, with one mirror wall: radiance 1 / pi in every pixel. All
+  // points in the mirror are off-grid points. The sampled ones serve the others: each has four of
+  // them among 7 x 7 pixels, so that about one in six is sampled, with at most a quarter of the
+  // initial sampling's rays.
   tests::SceneBuilder builder;
   const std::uint32_t grey = builder.material(tests::grey(0.8, 0.2));
   scenes::Material silver = tests::grey(0.0);

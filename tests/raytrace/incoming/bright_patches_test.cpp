@@ -15,7 +15,7 @@ namespace {
 
 constexpr double edge_m = 0.05;
 
-// Small squares over a dark floor that look down; each is a patch of a radiosity of its own.
+// Small squares above a dark floor, facing down; each is a patch with its own radiosity.
 struct Squares {
   struct Square {
     Vec3 middle;
@@ -44,7 +44,7 @@ struct Squares {
     return edge_m * edge_m * std::max(0.0, glm::dot(way, from.normal)) * std::max(0.0, way.z) /
            (base::pi * d2 * d2);
   }
-  // The probability of aiming at the patch of a point, by the density there.
+  // The probability of aiming at the patch of a point, from the density there.
   static double probability(const BrightPatches& bright, const BrightPatches::Place& from,
                             std::uint32_t patch, const Vec3& point) {
     const Vec3 way = point - from.position;
@@ -101,7 +101,7 @@ TEST(BrightPatches, AimedRaysBringWhatAllOfThemSend) {
   EXPECT_NEAR(all, 1.0, 1e-12);
 }
 
-// A square h over the place and x beside it sends as B cos / d^2 = B h / (x^2 + h^2)^(3/2).
+// A square at height h and horizontal distance x sends B cos / d^2 = B h / (x^2 + h^2)^(3/2).
 TEST(BrightPatches, OfTwoTheNearerIsAimedAtAsMuchMoreAsItSends) {
   const Squares squares({{{0.1, 0.0, 0.2}, 1000.0}, {{-0.1, 0.0, 2.0}, 1000.0}});
   const BrightPatches bright(squares.solution);
@@ -123,12 +123,12 @@ TEST(BrightPatches, WhatIsBehindTheSurfaceIsNotAimedAt) {
   for (const double choice : {0.0, 0.5, 0.999}) {
     const auto aimed = bright.aim(between, choice, 0.5, 0.5);
     ASSERT_TRUE(aimed.has_value());
-    EXPECT_EQ(aimed->patch, 2U);  // alone above it
+    EXPECT_EQ(aimed->patch, 2U);  // the only one above it
   }
 }
 
-// Whatever the place, in the boxes of the tree or beside a square: what has no share is aimed at
-// nothing, where a box has a corner above the surface and neither of its halves has.
+// For any place, in the boxes of the tree or beside a square: the remainder of the probabilities to
+// 1 is not aimed, if a box has a corner above the surface and neither of its halves has one.
 TEST(BrightPatches, WhatProbabilitiesLackIsAimedAtNothing) {
   const Squares squares(several);
   const BrightPatches bright(squares.solution);

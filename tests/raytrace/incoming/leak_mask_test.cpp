@@ -13,8 +13,8 @@
 namespace earthshine::raytrace {
 namespace {
 
-// A sheet, 1 m, (s, t) = (x + 1/2, y + 1/2), and a wall on its front that runs askew, so that no
-// cut of the facet follows it: from (-1, -0.35) to (1, 0.25), 1 m high.
+// A sheet, 1 m, (s, t) = (x + 1/2, y + 1/2), and an oblique wall on its front, so that no division
+// of the facet follows it: from (-1, -0.35) to (1, 0.25), 1 m high.
 constexpr double rise = 0.3, middle = -0.05;
 
 scenes::Scene walled_plate() {
@@ -60,9 +60,9 @@ std::vector<radiosity::Patches> even_and_uneven(const scenes::Scene& scene) {
 }
 
 TEST(LeakMask, NoLightIsReadAcrossAWall) {
-  // 1 on the one side, a million on the other, by the cells' centres: a cell that sees only such
-  // as are on its own side reads what it has itself, at each of its points, to rounding. Behind
-  // the sheet no wall stands: there the radiance goes over from the one to the other.
+  // 1 on one side, a million on the other, by the cells' centres: a cell that sees only cells on
+  // its own side reads its own value at each of its points, to rounding. The back of the sheet has
+  // no wall: there the radiance is interpolated between both.
   const scenes::Scene scene = walled_plate();
   const scenes::RayQuery query(scene);
   for (const radiosity::Patches& patches : even_and_uneven(scene)) {
@@ -96,8 +96,8 @@ TEST(LeakMask, ALinearFieldIsReadExactlyAwayFromTheWall) {
     base::Rng rng(base::Key(1, base::Stream::Test, 1));
     for (int k = 0; k < 5000; ++k) {
       const double s = 0.125 + 0.75 * rng.next(), t = 0.125 + 0.75 * rng.next();
-      // A cell that the wall touches has its centre within half a cell's diagonal, 0.09, of it;
-      // what reads such a cell lies within another 0.18.
+      // The centre of a cell at the wall is within half a cell's diagonal, 0.09, of it; cells that
+      // read such a cell are within another 0.18.
       if (std::abs(t - 0.5 - middle - rise * (s - 0.5)) < 0.28) continue;
       ASSERT_NEAR(read(table, s, t, true), linear(s, t), 2e-6) << s << " " << t;
     }
@@ -135,7 +135,7 @@ TEST(LeakMask, OnlyTheSideOnWhichTheWallStandsIsParted) {
     EXPECT_FALSE(sight.parted(plate.first_back + leaf, plate.first_back + leaf + 1));
     parted += apart ? 1 : 0;
   }
-  EXPECT_EQ(parted, 16);  // one a column
+  EXPECT_EQ(parted, 16);  // one per column
 }
 
 }  // namespace

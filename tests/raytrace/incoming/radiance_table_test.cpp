@@ -12,8 +12,8 @@
 namespace earthshine::raytrace {
 namespace {
 
-// A square plate, 1 m: (s, t) = (x + 1/2, y + 1/2); hits (u, v) of its first triangle are
-// (s - t, t).
+// A square plate, 1 m: (s, t) = (x + 1/2, y + 1/2); hits (u, v) of its first triangle are (s - t,
+// t).
 scenes::Scene plate(bool two_sided = false) {
   tests::SceneBuilder builder;
   scenes::Material material = tests::grey(0.5);
@@ -33,7 +33,7 @@ scenes::Hit hit_at(double s, double t, bool front = true) {
 
 using Field = std::function<double(double s, double t)>;
 
-// One light group whose radiance at each patch's centre is the field's.
+// One light group whose radiance at each patch's centre is the field's value.
 radiosity::Solution filled(const radiosity::Patches& patches, const Field& front,
                            const Field& back = {}) {
   radiosity::Solution solution;
@@ -74,8 +74,8 @@ TEST(RadianceTable, ALinearFieldIsReadExactlyAcrossCellsOfAnySize) {
 }
 
 TEST(RadianceTable, TheRadianceHasNoStepsBetweenCellsOfDifferentSizes) {
-  // White noise at the centres, trees without grading: across each of the cells' sides the value
-  // changes by no more than the slope (values of 0 to 1 over a quarter of a cell) over 2e-9.
+  // White noise at the centres, ungraded trees: across each side of a cell the value changes by no
+  // more than the slope (values of 0 to 1 over a quarter of a cell) over 2e-9.
   base::Rng values(base::Key(1, base::Stream::Test, 9));
   const radiosity::Patches patches =
       tests::random_cuts(radiosity::subdivide(plate(), 0.5), 12, 0.25, 3);
@@ -115,8 +115,8 @@ TEST(RadianceTable, AnEvenTreeReadsLikeTheGridOfItsCells) {
 }
 
 TEST(RadianceTable, TheErrorOnUnevenCellsFallsWithTheSquareOfTheEdge) {
-  // All cells halved: a quarter of the error, but for the plate's edge, which is left out, and for
-  // the strips between cells of different sizes, whose share of the area halves as well.
+  // All cells halved: a quarter of the error, except at the plate's edge, which is excluded, and in
+  // the strips between cells of different sizes, whose share of the area is halved, too.
   const Field bump = [](double s, double t) { return 1.0 + s * s * t - 0.5 * t * t; };
   const auto error = [&](int more) {
     radiosity::Patches patches =

@@ -19,7 +19,7 @@ scenes::Area area(const Vec3& center, const Vec3& edge_u, const Vec3& edge_v) {
   return {"panel", center, edge_u, edge_v, normal};
 }
 
-// A plate of 1 m about the origin, facing up to a uniform Earth of half angle 70 degrees.
+// A plate of 1 m around the origin, facing up to a uniform Earth of half angle 70 degrees.
 scenes::Scene plate_under(const scenes::Area& over) {
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
@@ -39,7 +39,7 @@ double exact_illuminance() {  // E = pi L sin^2
   return base::pi * earth_radiance * std::pow(std::sin(base::radians(70.0)), 2);
 }
 
-// What the sampler's lights give a horizontal plate at a point, with nothing in between.
+// Unoccluded illuminance of a horizontal plate at a point from the sampler's lights.
 double illuminance(const scenes::Scene& scene, int lights, const Vec3& point) {
   const tests::Prepared prepared(scene);
   const LightSampler sampler(prepared, Indirect::Distributed, lights, false,
@@ -70,7 +70,7 @@ TEST(DistributedArea, ManyLightsGiveTheScenesCentreWhatTheEarthDoes) {
 }
 
 TEST(DistributedArea, LightsTogetherEmitTheAreasFlux) {
-  // Far below, N lights are one of intensity M A / pi on the axis, whatever their number.
+  // Far below, N lights equal one of intensity M A / pi on the axis, for any N.
   const scenes::Scene scene = plate_under(overhead());
   const double exitance = earth_area(scene, "panel")->exitance.g;
   const double d = 1e5;

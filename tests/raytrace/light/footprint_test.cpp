@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lamps nearer to a surface than pixels are wide: the picture has all of their light.
+// Lamps closer to a surface than the width of a pixel: the picture has all of their light.
 #include "raytrace/light/footprint.h"
 
 #include <gtest/gtest.h>
@@ -52,14 +52,14 @@ DrawnMean drawn(const scenes::Scene& scene, const scenes::Camera& camera) {
   return {mean, std::sqrt(std::max(0.0, sum2 / seed_count - mean * mean) / (seed_count - 1))};
 }
 
-// The integral over the film of L = rho E / pi, E = I cos / r^2 on the floor: over the lamp's own
-// directions, in each of which it sends I, where they meet what the picture shows.
+// The integral over the film of L = rho E / pi, E = I cos / r^2 on the floor: over the lamp's
+// directions with intensity I, where they meet the visible floor.
 double drawn_exactly(const Vec3& lamp, const scenes::Camera& camera) {
   const CameraModel model = make_camera_model(camera, side_px, side_px);
   constexpr int steps = 2000;
   double sum = 0.0;
   for (int i = 0; i < steps; ++i) {
-    // Even in the logarithm of the tangent, which is the way on the floor over the height.
+    // Even in the logarithm of the tangent, the distance on the floor over the height.
     const double low = std::log(1e-3), high = std::log(4.0 / lamp.z);
     const double tangent = std::exp(low + (i + 0.5) * (high - low) / steps);
     const double cosine = 1.0 / std::sqrt(1.0 + tangent * tangent);
@@ -77,20 +77,20 @@ double drawn_exactly(const Vec3& lamp, const scenes::Camera& camera) {
   return sum * 2.0 * base::pi / steps * rho / base::pi / (side_px * side_px);
 }
 
-// Camera samples meet the light of a lamp 1 mm over the floor once in some thousand.
+// One of some thousand camera samples hits the light of a lamp 1 mm above the floor.
 TEST(Footprint, PictureHasAllTheLightOfALampThatIsNearerThanAPixelIsWide) {
   for (const double height : {1e-3, 0.02, 0.1, 0.3}) {
     const NearLampRoom room(Vec3(0.03, 0.05, height));
     const DrawnMean found = drawn(room.scene.scene, room.camera);
-    // 1e-6: within that of the foot of the lamp the sum has no rings.
+    // 1e-6: the sum has no rings closer to the foot of the lamp.
     EXPECT_NEAR(found.value, drawn_exactly(Vec3(0.03, 0.05, height), room.camera),
                 4.0 * found.std_error + 2e-6 * found.value)
         << height << " m, " << found.std_error;
   }
 }
 
-// Each pixel by itself: what a picture of pixels so small that the lamp is far from all of them
-// has, summed by 32 x 32.
+// Each pixel against the sum of 32 x 32 pixels of a picture whose pixels are small relative to the
+// lamp's distance.
 TEST(Footprint, PixelIsTheMeanOfItsFilter) {
   NearLampRoom room(Vec3(0.03, 0.05, 0.05));
   room.camera.filter = scenes::FilterShape::Triangle;
@@ -130,7 +130,7 @@ TEST(Footprint, PixelIsTheMeanOfItsFilter) {
       const auto k = std::size_t(y) * side_px + std::size_t(x);
       const double std_error =
           std::sqrt(std::max(0.0, sum2[k] - sum[k] * sum[k]) / (seed_count - 1));
-      // One of 100 pixels beyond 5 standard errors of 16 values has a chance of about 1 %.
+      // The probability that one of 100 pixels exceeds 5 standard errors of 16 values is about 1 %.
       EXPECT_NEAR(sum[k], mean, 5.0 * std_error + 0.01 * mean) << x << ", " << y;
     }
   }

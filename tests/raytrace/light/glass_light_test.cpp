@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light that glass lets through: direct light of patches, camera samples and the path tracer
-// against closed forms.
+// Light through glass: direct light of patches, camera samples and the path tracer against closed
+// forms.
 #include <gtest/gtest.h>
 
 #include "tests/raytrace/light/lit_floor.h"
@@ -11,7 +11,7 @@ namespace {
 using namespace lit_floor;
 
 TEST(ThrownLight, SheetOfGlassLetsItsShareThrough) {
-  // ior bends nothing in a sheet; the slant of the ray does not change the share.
+  // ior bends nothing in a sheet; the ray's angle does not change the share.
   for (const Vec3& at : {Vec3(0, 0, 2), Vec3(1.5, 0.5, 2)}) {
     Floor scene;
     scene.plate(scene.material(glass(0.7, 1.5, true)), 8.0, 1.0, true);
@@ -34,9 +34,9 @@ TEST(ThrownLight, GlassKeepsColoursApart) {
   EXPECT_NEAR(lx.b / lx.g, 4.0 / 9.0, 1e-9);
 }
 
-// Of a blue lamp blue glass and a blue mirror hide nothing, whatever their luminance says. A square
-// of half edge a is seen from the height h over its centre under 4 atan(a^2 / (h sqrt(2 a^2 +
-// h^2))): from the lamp at 2 m under a sixth of the sphere, from its image at 4 m under 0.0641.
+// Blue glass and a blue mirror block nothing of a blue lamp, whatever their luminance. A square of
+// half edge a is seen from the height h above its centre under 4 atan(a^2 / (h sqrt(2 a^2 + h^2))):
+// from the lamp at 2 m under a sixth of the sphere, from its image at 4 m under 0.0641.
 TEST(ThrownLight, FluxIsFollowedInItsColour) {
   const auto share = [](double a, double h) {
     return std::atan(a * a / (h * std::sqrt(2.0 * a * a + h * h))) / base::pi;
@@ -74,7 +74,7 @@ TEST(ThrownLight, TwoPanesMultiplyAndAPlateOfTwoFacesIsTwo) {
   }
 }
 
-// In one plane with it, and in either order: an opaque plate stops light whatever lies on it.
+// In one plane and in either order: an opaque plate stops light whatever lies on it.
 TEST(ThrownLight, GlassOnAnOpaquePlateLetsNothingThrough) {
   for (const bool glass_first : {true, false}) {
     Floor scene;

@@ -65,7 +65,7 @@ TEST(LightSampler, DistributedLightsAreNeverLeftToChance) {
   std::vector<scenes::LightChoice> chosen;
   lights.choose({}, 0.5, chosen);
   EXPECT_EQ(chosen.size(), 50U + 4 * 50U);
-  // The report's lights are fixed points: the same wherever they are seen from, near or far.
+  // The report's lights are fixed points: the same from every receiver.
   for (std::size_t k = 0; k < lights.count(); ++k) {
     const auto place = [&](const Vec3& point, double u) {
       const scenes::LightSample sample = lights.sample(k, point, u, u);
@@ -77,9 +77,9 @@ TEST(LightSampler, DistributedLightsAreNeverLeftToChance) {
 }
 
 TEST(LightSampler, PictureOfManyLampsIsThatOfAllOfThem) {
-  // 100 lamps by choice against the same lamps in groups so small that all are taken: the mean over
-  // seeds of each quarter of the picture within four standard errors of the difference. Shadows of
-  // the screen and of the choice are in it.
+  // 100 lamps by random choice against the same lamps in groups so small that all are sampled: the
+  // mean over seeds of each quarter of the picture, within four standard errors of the difference.
+  // Includes shadows of the screen.
   const tests::SceneBuilder builder = under_lamps(10);
   scenes::Scene apart = builder.scene;
   for (std::size_t k = 0; k < apart.lamps.size(); ++k) {
@@ -153,11 +153,9 @@ TEST(LightSampler, NearestLampOnARayIsSeen) {
   EXPECT_GT(seen_count, 50);
 }
 
-// Of a Sun of 5 degrees and a small mirror, what any sample throws on a surface may reach it, from
-// the mirror's rim and at grazing incidence too; most surfaces are told without a sample.
 TEST(LightSampler, ALampFlushWithItsCeilingIsSeenWhole) {
-  // Seen slantwise and filling the picture, every pixel is its radiance M / pi by both tracers; ray
-  // and ceiling meet where ray and lamp do.
+  // Seen obliquely and filling the picture, every pixel is its radiance M / pi in both tracers; the
+  // hits of the ceiling and of the lamp coincide.
   for (const double height_m : {0.3, 2.0, 7.1}) {
     tests::SceneBuilder builder;
     builder.plate(builder.material(tests::grey(0.5)), 4.0, height_m, false);
@@ -187,6 +185,8 @@ TEST(LightSampler, ALampFlushWithItsCeilingIsSeenWhole) {
   }
 }
 
+// A Sun of 5 degrees and a small mirror: may_reach() must hold wherever a sample brings light, also
+// from the mirror's rim and at grazing incidence. For most surfaces it is false without a sample.
 TEST(LightSampler, NoSunIsLeftOutThatAMirrorThrows) {
   tests::SceneBuilder builder;
   scenes::Material silver = tests::grey(0.0);
@@ -204,7 +204,7 @@ TEST(LightSampler, NoSunIsLeftOutThatAMirrorThrows) {
     const tests::Prepared prepared(builder.scene);
     const LightSampler lights(prepared, Indirect::None, 1, false, std::nullopt,
                               prepared.query.specular_paths().mirrors());
-    ASSERT_EQ(lights.count(), 2U);  // it and its image
+    ASSERT_EQ(lights.count(), 2U);  // the Sun and its image
     for (int n = 0; n < 20000; ++n) {
       const double x = rng.next(), y = rng.next(), z = rng.next();
       const Vec3 point(6.0 * x - 5.0, 3.0 * y - 1.5, 2.0 * z);

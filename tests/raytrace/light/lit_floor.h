@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A floor of 4 mm at the origin under lamps, glass and mirrors; all else is black. Its light as
-// patches, camera samples and the path tracer have it.
+// A floor of 4 mm at the origin under lamps, glass and mirrors; everything else is black. Its
+// illuminance by patches, camera samples and the path tracer.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -55,8 +55,8 @@ class Floor : public tests::SceneBuilder {
   }
 };
 
-// Illuminance of the floor, as each way of finding it has it. `solved` is as the patch's samples
-// have it: without the scale that closes the source's flux, which is 1 within its noise.
+// Illuminance of the floor by each method. `solved` is from the patch's samples, without the scale
+// that closes the source's flux, which is 1 within its noise.
 struct Found {
   double solved = 0.0, scale = 1.0, drawn = 0.0, traced = 0.0, std_error = 0.0;
 };
@@ -81,8 +81,8 @@ inline Found find(const scenes::Scene& scene, double camera_height_m = 0.5) {
   return found;
 }
 
-// Over the 4 mm light varies by 2e-3 of itself or less, which the sets of points average out to
-// 1e-3; wide sources add noise of `noise` of the light.
+// The light varies by 2e-3 or less over the 4 mm, which the sets of points average to 1e-3; wide
+// sources add noise of `noise` relative to the light.
 inline void expect_all(const Found& found, double exact, double noise = 0.0) {
   const double slack = (1e-3 + noise) * exact + 1e-9;
   EXPECT_NEAR(found.solved, exact, slack);

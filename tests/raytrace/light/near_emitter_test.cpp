@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shadow rays end where they are aimed, at a point of an emitter, and not at the emitter itself:
-// however slantwise, however large the scene and whatever glass is between.
+// Shadow rays end at their target point on an emitter, not at the emitter itself: at any angle, in
+// scenes of any size, and through glass.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,9 +14,9 @@ namespace {
 
 constexpr int size_px = 16;
 
-// A floor of 1 m and a square of 20 cm that shines down 10 cm over it, seen from below: of the
-// floor beyond 17 cm it is seen under more than 60 degrees. A black plate far below, wide or small,
-// lights nothing. Panes let all through.
+// A floor of 1 m and a square of 20 cm that shines down from 10 cm, seen from below: from the floor
+// beyond 17 cm it is seen under more than 60 degrees. A black plate far below, wide or small,
+// lights nothing. The panes are perfectly transparent.
 struct Hall {
   Hall(double width_m, int panes) {
     tests::SceneBuilder builder;
@@ -100,9 +100,9 @@ TEST(NearEmitter, SendsAsMuchInALargeSceneAndThroughPanesAsInASmallOne) {
   }
 }
 
-// A square that shines down on a mirror and lights the ceiling beside it, 20 cm on, as its image
-// below in place of the mirror. The ceiling is dark, as the mirror shows it itself; the scene is so
-// large that the square is sampled.
+// A square that shines down on a mirror lights the ceiling 20 cm beside it like its image below
+// without the mirror. The ceiling is dark, because the mirror shows it, too; the scene is so large
+// that shadow rays sample the square.
 TEST(NearEmitter, AMirrorThrowsWhatTheImageWouldSend) {
   const auto made = [](bool mirrored) {
     tests::SceneBuilder builder;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light that flat mirrors throw, and all of it together: direct light of patches, camera samples
-// and the path tracer against closed forms.
+// Light by flat mirrors, alone and with other light: direct light of patches, camera samples and
+// the path tracer against closed forms.
 #include <gtest/gtest.h>
 
 #include "tests/raytrace/light/lit_floor.h"
@@ -26,7 +26,7 @@ TEST(ThrownLight, LampBesideAMirrorIsTwoLampsAsFarAsTheMirrorReaches) {
 }
 
 TEST(ThrownLight, IsUnshadowedOnBothLegsOrNotThere) {
-  // At x = -0.5 the leg from the floor is at 0.4 m, that from the lamp at 1.2 m.
+  // At x = -0.5 the segment from the floor is at 0.4 m, the segment from the lamp at 1.2 m.
   const Vec3 at(0.5, 0, 2), image(-2.5, 0, 2);
   for (const double low : {0.3, 1.1, 0.7}) {
     Floor scene;
@@ -39,7 +39,8 @@ TEST(ThrownLight, IsUnshadowedOnBothLegsOrNotThere) {
 }
 
 TEST(ThrownLight, GoesThroughGlassOnItsWay) {
-  // Over the floor and before the mirror, glass of 0.5 in the plane x = -0.5: both legs cross it.
+  // Above the floor and in front of the mirror, glass of 0.5 in the plane x = -0.5 crosses both
+  // segments.
   const Vec3 at(0.5, 0, 2), image(-2.5, 0, 2);
   Floor scene;
   scene.upright_mirror(0.8, 1.0);
@@ -50,7 +51,7 @@ TEST(ThrownLight, GoesThroughGlassOnItsWay) {
 }
 
 TEST(ThrownLight, PaneThrowsItsMirrorsShareToEitherSide) {
-  // A sheet under a lamp that stands below it: the image is as far above.
+  // A sheet above a lamp: the image is as far above the sheet.
   Floor scene;
   scenes::Material pane = glass(0.8, 1.5, true);
   pane.mirror = Rgb(0.1);
@@ -67,8 +68,8 @@ TEST(ThrownLight, BackOfAMirrorThrowsNothing) {
   expect_all(find(scene.scene), from_point({0.5, 0, 2}, 100.0));
 }
 
-// Each kind of lamp beside a mirror, against itself and its image without the mirror. Paths of the
-// path tracer might meet lamps with a surface in the mirror as well: once is right.
+// Each kind of lamp beside a mirror, against the lamp and its image without the mirror. Paths that
+// hit a lamp's surface in the mirror must not count its light twice.
 class ThrownLamp : public testing::TestWithParam<scenes::LampKind> {};
 
 TEST_P(ThrownLamp, IsItsImage) {
@@ -92,7 +93,7 @@ TEST_P(ThrownLamp, IsItsImage) {
   with_image.scene.lamps.push_back(lamp);
   const Found alone = find(with_image.scene);
   with_image.scene.lamps.push_back(image);
-  // Two lamps have scales of their own: 1e-3 each way.
+  // Two lamps have separate scales: 1e-3 each.
   const Found two = find(with_image.scene);
   const double wanted = two.drawn, thrown = wanted - alone.drawn;
   EXPECT_GT(thrown, 0.05 * wanted);
@@ -105,8 +106,8 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ThrownLamp,
                                          scenes::LampKind::Rectangle, scenes::LampKind::Disk));
 
 TEST(ThrownLight, MirrorSendsTheSunDown) {
-  // Sunlight along -x meets a mirror of normal (1, 0, -1) / sqrt 2 and goes on along -z, but for
-  // the Sun's 0.02 of height.
+  // Sunlight along -x meets a mirror of normal (1, 0, -1) / sqrt 2 and continues along -z, except
+  // for the Sun's 0.02 of height.
   Floor scene;
   scene.quad(scene.material(mirror(0.9)), {-0.5, -0.5, 1}, {-0.5, 0.5, 1}, {0.5, 0.5, 2},
              {0.5, -0.5, 2});
@@ -128,8 +129,8 @@ TEST(ThrownLight, SunComesThroughAWindow) {
   expect_all(find(scene.scene), 0.85 * 20000.0 * sun.direction.z, 1e-3);
 }
 
-// A side in the plane of a large mirror that looks the other way is thrown by no shadow ray, and
-// keeps its light.
+// The side of a sheet in the plane of a large mirror that faces the other way is no mirror for
+// shadow rays; its light counts as absorbed there.
 TEST(ThrownLight, EachSideOfASheetKeepsItsOwn) {
   tests::SceneBuilder scene;
   scenes::Material sheet = mirror(0.6);
@@ -143,8 +144,9 @@ TEST(ThrownLight, EachSideOfASheetKeepsItsOwn) {
 }
 
 TEST(ThrownLight, CrowdOfLampsIsThrownToo) {
-  // 40 lamps of one group under a mirror in the plane z = 3 are drawn from by chance: by
-  // docs/theory.md a choice is off by 0.06 at most, the mean of the patch's 64 points by 0.0075.
+  // From 40 lamps of one group under a mirror in the plane z = 3 some are drawn at random: by
+  // docs/theory.md the error of a choice is at most 0.06, of the mean of the patch's 64 points
+  // 0.0075.
   Floor scene;
   scene.plate(scene.material(mirror(1.0)), 40.0, 3.0, false);
   double exact = 0.0;
@@ -157,9 +159,9 @@ TEST(ThrownLight, CrowdOfLampsIsThrownToo) {
 }
 
 TEST(ThrownLight, EnergyIsThatOfTheLamp) {
-  // A closed room with a mirror for a wall and a pane across: nothing is lost, so that what patches
-  // keep of the light must add up to the lamp's flux. The patches' own samples are a few permille
-  // off; if what goes on counted as landed, 1.4 of the flux would land.
+  // A closed room with a mirror wall and a pane across it loses no light: the light that patches
+  // absorb must add up to the lamp's flux. The patches' samples have an error of a few per mille;
+  // if light that continues counted as landed, 1.4 of the flux would land.
   tests::SceneBuilder scene;
   scenes::Material wall = mirror(0.7), pane = glass(0.6, 1.5, true);
   wall.diffuse = Rgb(0.2);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int edge_px = 16, pictures = 8;
 
-// A bare lamp over the floor of a closed room, and panes from 5 cm above it on, each from wall to
+// A bare lamp above the floor of a closed room, and panes from 5 cm above it on, each from wall to
 // wall.
 scenes::Scene lit_floor(double lamp_m, const scenes::Material& pane, int panes) {
   tests::SceneBuilder builder;
@@ -45,7 +45,7 @@ struct Mean {
   double mean = 0.0, standard_error = 0.0;
 };
 
-// Of all pixels, by pictures that differ by their seed.
+// Mean over all pixels, of pictures with different seeds.
 template <class Draw>
 Mean mean_of(const Draw& draw) {
   std::vector<double> means;
@@ -72,7 +72,7 @@ struct Solved {
     solve.refine.max_patches = 3000;
     solution = prepared.solve(solve);
   }
-  // By the solution times a factor: whatever it is like, the residual makes up for it.
+  // With the solution times a factor: the residual compensates any error of the solution.
   [[nodiscard]] Mean gathered(double factor, bool denoise) const {
     radiosity::Solution scaled = solution;
     for (auto* values : {&scaled.radiosity, &scaled.indirect_radiosity}) {
@@ -91,7 +91,7 @@ struct Solved {
   radiosity::Solution solution;
 };
 
-// However the picture is drawn, and from whatever share of the solution.
+// With and without denoising, and for any factor on the solution.
 void expect_same_picture(const scenes::Scene& scene, const Mean& wanted) {
   const Solved solved(scene);
   for (const bool denoise : {false, true}) {
@@ -105,15 +105,14 @@ void expect_same_picture(const scenes::Scene& scene, const Mean& wanted) {
   }
 }
 
-// The lamp is 0.1 mm above the floor: half of its light lands on a spot that no ray finds by
-// chance.
+// The lamp is 0.1 mm above the floor: half of its light lands on a spot that random rays miss.
 TEST(BehindGlass, PanesThatLetAllThroughChangeNoPicture) {
   const scenes::Material clear = sheet(0.0, 0.0, 1.0);
   const Mean bare = Solved(lit_floor(1e-4, clear, 0)).gathered(1.0, false);
   for (const int panes : {1, 2}) expect_same_picture(lit_floor(1e-4, clear, panes), bare);
 }
 
-// The spot is 5 cm wide, so that paths find it, too, and the pane itself is bright above it.
+// The spot is 5 cm wide, so that paths find it, too, and the pane above it is bright itself.
 TEST(BehindGlass, APaneThatDoesAllIsDrawnAsByAllPaths) {
   const scenes::Scene scene = lit_floor(0.03, sheet(0.2, 0.2, 0.5), 1);
   const tests::Prepared prepared(scene);
@@ -127,8 +126,8 @@ TEST(BehindGlass, APaneThatDoesAllIsDrawnAsByAllPaths) {
                       }));
 }
 
-// A dark closed room whose pane reaches from wall to wall, in a bright box: rays that go on at the
-// pane's edge do not set out behind the wall.
+// A dark closed room with a pane from wall to wall, in a bright box: rays that continue at the
+// pane's edge must not start behind the wall.
 TEST(BehindGlass, AtItsEdgeNothingLeaksIntoAClosedRoom) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
@@ -145,8 +144,8 @@ TEST(BehindGlass, AtItsEdgeNothingLeaksIntoAClosedRoom) {
   for (const bool denoise : {false, true}) EXPECT_EQ(solved.gathered(1.0, denoise).mean, 0.0);
 }
 
-// An upright panel that shines over a floor: panes that let all through, however slantwise it is
-// seen, leave what falls there as it is.
+// An upright panel that lights a floor: perfectly transparent panes, seen at any angle, leave the
+// light on the floor unchanged.
 TEST(BehindGlass, PanesBeforeAnEmitterChangeNoDirectLight) {
   const auto mean = [](int panes) {
     tests::SceneBuilder builder;

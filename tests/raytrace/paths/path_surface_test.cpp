@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What surfaces do to the path tracer's paths, against closed forms: mirrors, glass, the Phong
-// lobe, black backs.
+// Surfaces in the path tracer against closed forms: mirrors, glass, the Phong lobe, black backs.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +12,7 @@ namespace {
 
 TEST(PathTracer, FurnaceWithGlossMirrorAndGlassIsStillUniform) {
   // Walls of rho = 0.8 and M = 0.2: radiance 1 / pi everywhere. A perfect mirror and a clear pane
-  // return all they get, and so does a solid block of glass, by refraction and total reflection.
+  // return all light, and so does a solid block of glass, by refraction and total reflection.
   tests::SceneBuilder builder;
   const std::uint32_t wall = builder.material(tests::grey(0.8, 0.2));
   scenes::Material mirror = tests::grey(0.0);
@@ -28,7 +27,7 @@ TEST(PathTracer, FurnaceWithGlossMirrorAndGlassIsStillUniform) {
   const std::uint32_t pane = builder.material(clear);
   builder.room({wall, wall, silver, wall, wall, wall});
   builder.quad(pane, {0.6, 0.1, 0.1}, {0.6, 0.9, 0.1}, {0.6, 0.9, 0.9}, {0.6, 0.1, 0.9});
-  builder.room({block, block, block, block, block, block});  // seen from inside: turned below
+  builder.room({block, block, block, block, block, block});  // seen from inside: inverted below
   for (std::size_t t = builder.scene.triangles.size() - 12; t < builder.scene.triangles.size();
        ++t) {
     std::swap(builder.scene.triangles[t].vertex[1], builder.scene.triangles[t].vertex[2]);
@@ -42,7 +41,7 @@ TEST(PathTracer, FurnaceWithGlossMirrorAndGlassIsStillUniform) {
 }
 
 TEST(PathTracer, PathsBetweenPerfectMirrorsEnd) {
-  // A closed room that loses nothing and shines nowhere: dark, and finished.
+  // A closed room without losses and without light: black, and finished.
   tests::SceneBuilder builder;
   scenes::Material mirror = tests::grey(0.0);
   mirror.mirror = Rgb(1.0);
@@ -69,8 +68,8 @@ TEST(PathTracer, MirrorShowsTheLampAndTheSunTimesItsReflectance) {
 }
 
 TEST(PathTracer, GlassSlabLetsThroughTheSquareOfItsShareAndWhatRunsToAndFro) {
-  // Shares t and r at each of two faces, seen along the normal, before an emitting plate of
-  // radiance L: T = t^2 (1 + r^2 + r^4 + ...) = t^2 / (1 - r^2). What is reflected sees black sky.
+  // Shares t and r at each of two faces, seen along the normal, in front of an emitting plate of
+  // radiance L: T = t^2 (1 + r^2 + r^4 + ...) = t^2 / (1 - r^2). Reflected rays see the black sky.
   tests::SceneBuilder builder;
   scenes::Material glass = tests::grey(0.0);
   glass.transmit = Rgb(0.7);
@@ -85,9 +84,9 @@ TEST(PathTracer, GlassSlabLetsThroughTheSquareOfItsShareAndWhatRunsToAndFro) {
 }
 
 TEST(PathTracer, GlassBendsBySnellsLaw) {
-  // Looking at 45 deg into a slab 0.1 m thick: the ray comes out shifted along the surface by
-  // 0.1 (tan 45 - tan asin(sin 45 / 1.5)) and meets the plate under the slab at 0.3 m's depth
-  // there, beside the edge between a bright and a dark half that it would otherwise miss.
+  // A ray enters a slab of 0.1 m at 45 deg. It leaves the slab shifted along the surface by 0.1
+  // (tan 45 - tan asin(sin 45 / 1.5)) and hits the plate under the slab, 0.3 m deep in all, beside
+  // the edge between a bright and a dark half, which it would miss without refraction.
   const double inside = std::asin(std::sin(base::pi / 4) / 1.5);
   const double shift = 0.1 * (1.0 - std::tan(inside));
   for (const double side : {-1.0, 1.0}) {
@@ -98,8 +97,8 @@ TEST(PathTracer, GlassBendsBySnellsLaw) {
     const std::uint32_t m = builder.material(glass);
     builder.plate(m, 1.0, 0.3, true);
     builder.plate(m, 1.0, 0.2, false);
-    // Unbent, the axis meets z = 0 at x = 0; bent it does so at x = -shift. Bright beyond an edge
-    // 1 % of the shift away.
+    // Without refraction the axis meets z = 0 at x = 0, with it at x = -shift. Bright beyond an
+    // edge 1 % of the shift away.
     const double edge = -shift * (1.0 + 0.01 * side);
     const std::uint32_t bright = builder.material(tests::grey(0.0, 100.0));
     builder.quad(bright, {edge, -1, 0}, {edge + 2, -1, 0}, {edge + 2, 1, 0}, {edge, 1, 0});
@@ -112,7 +111,7 @@ TEST(PathTracer, GlassBendsBySnellsLaw) {
 }
 
 TEST(PathTracer, PhongLobeReflectsItsEnergyBound) {
-  // Seen along the normal in a uniform surrounding, pi L = k_d + 2 k_s / (n + 2) per unit of it.
+  // Seen along the normal in uniform surroundings, pi L = k_d + 2 k_s / (n + 2) per unit.
   for (const double n : {1.0, 10.0, 400.0}) {
     tests::SceneBuilder builder;
     const std::uint32_t wall = builder.material(tests::grey(0.7, 0.3));
@@ -127,8 +126,8 @@ TEST(PathTracer, PhongLobeReflectsItsEnergyBound) {
 }
 
 TEST(PathTracer, HighlightFallsWithTheCosinesPower) {
-  // Sun 20 deg off the normal, camera on it: pi L / (E cos) = k_d + k_s cos^n(20 deg). The Sun's
-  // disc of 0.27 deg changes it by about n^2 (0.0047)^2 / 8 = 4e-4.
+  // Sun 20 deg off the normal, camera on the normal: pi L / (E cos) = k_d + k_s cos^n(20 deg). The
+  // Sun's disc of 0.27 deg changes it by about n^2 (0.0047)^2 / 8 = 4e-4.
   tests::SceneBuilder builder;
   scenes::Material glossy = tests::grey(0.3);
   glossy.specular = Rgb(0.6);
@@ -154,9 +153,9 @@ TEST(PathTracer, BlackBacksOfOneSidedSurfacesAndBothSidesOfSheets) {
 }
 
 TEST(PathTracer, WhatAFlatMirrorThrowsComesOnce) {
-  // A mirror facing a plate sends it the light of a panel that does not shine on it directly:
-  // unfolded, the panel's image stands 3 m over the plate's point in view. E = rho_m M F. Shadow
-  // rays bring it, so that paths which meet the panel in the mirror must not.
+  // A mirror facing a plate reflects the light of a panel that does not light the plate directly:
+  // unfolded, the panel's image is 3 m above the visible point. E = rho_m M F. Shadow rays carry
+  // this light, so that paths that hit the panel by the mirror must not.
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 0.1, 0.0, true);
   scenes::Material mirror = tests::grey(0.0);
@@ -177,8 +176,8 @@ TEST(PathTracer, WhatAFlatMirrorThrowsComesOnce) {
 }
 
 TEST(PathTracer, CausticsAreLeftOutOfTheGatheredPaths) {
-  // A plate of glass that bends light, 1 mm thick: it moves the panel's image by 0.3 mm, takes
-  // 1 - 0.9^2 of its light, and no shadow ray goes through. E = 0.81 M F with the panel at 3 m.
+  // A plate of glass that bends light, 1 mm thick: it displaces the panel's image by 0.3 mm,
+  // absorbs 1 - 0.9^2 of its light, and blocks shadow rays. E = 0.81 M F with the panel at 3 m.
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 0.1, 0.0, true);
   scenes::Material glass = tests::grey(0.0);
@@ -196,8 +195,8 @@ TEST(PathTracer, CausticsAreLeftOutOfTheGatheredPaths) {
   EXPECT_EQ(estimate(picture(builder.scene, above(0.5), options)).mean, 0.0);
 }
 
-// What lobes throw is no caustic: shadow rays follow it, or paths that are in either set. So
-// without mirrors and glass the sets are the same, path by path.
+// Light by lobes is no caustic: shadow rays carry it, or paths in both sets. Hence without mirrors
+// and glass the sets are the same, path by path.
 TEST(PathTracer, LobesThrowNoCaustics) {
   tests::SceneBuilder builder;
   scenes::Material glossy = tests::grey(0.4);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reference path tracer against closed forms; the final gather plays no part here.
+// The reference path tracer against closed forms, without the final gather.
 #include "raytrace/paths/path_tracer.h"
 
 #include <gtest/gtest.h>
@@ -15,15 +15,15 @@ namespace {
 class PathFurnace : public testing::TestWithParam<double> {};
 
 TEST_P(PathFurnace, ClosedRoomHasRadianceMOverPiOneMinusRho) {
-  // Every bounce brings M / pi: L = (M / pi) (1 + rho + rho^2 + ...). A path cut at 100 bounces
-  // would lack 37 % at rho = 0.99.
+  // Every bounce adds M / pi: L = (M / pi) (1 + rho + rho^2 + ...). Paths cut at 100 bounces would
+  // lack 37 % at rho = 0.99.
   const double rho = GetParam();
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(rho, 0.3));
   builder.room({m, m, m, m, m, m});
   const Frame frame = picture(builder.scene, inside_room(), pixels(8, 64));
   expect_mean(frame, 0.3 / (base::pi * (1.0 - rho)));
-  // Roulette alone is left to chance: weights stay above 1/4, then paths end at odds 1 - rho.
+  // Only the roulette is random: weights stay above 1/4, then paths end with probability 1 - rho.
   EXPECT_LT(estimate(frame).std_error / estimate(frame).mean, 0.02);
 }
 INSTANTIATE_TEST_SUITE_P(Reflectances, PathFurnace, testing::Values(0.1, 0.5, 0.9, 0.99));
@@ -31,7 +31,7 @@ INSTANTIATE_TEST_SUITE_P(Reflectances, PathFurnace, testing::Values(0.1, 0.5, 0.
 class PathEarth : public testing::TestWithParam<double> {};
 
 TEST_P(PathEarth, OpenPlateUnderAUniformDiscHasRhoLSineSquared) {
-  // E = pi L sin^2(half angle), radiance rho E / pi; wide (met by paths) and narrow (shadow rays).
+  // E = pi L sin^2(half angle), radiance rho E / pi; wide (hit by paths) and narrow (shadow rays).
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
   builder.scene.earth = uniform_earth(GetParam());
@@ -41,9 +41,9 @@ TEST_P(PathEarth, OpenPlateUnderAUniformDiscHasRhoLSineSquared) {
 INSTANTIATE_TEST_SUITE_P(HalfAngles, PathEarth, testing::Values(5.0, 15.0, 30.0, 70.0));
 
 TEST(PathTracer, PlateUnderThePlateSeesTheEarthByTheirFormFactor) {
-  // A wide plate of rho = 0.5 under a disc of 30 deg, black plate of 0.4 m at 1 m over the point in
-  // view, smaller than the disc: E = pi L (sin^2(30 deg) - F), F of a parallel square on the axis,
-  // 4/pi x atan(x) with x = 0.2 / sqrt(1 + 0.2^2).
+  // A wide plate of rho = 0.5 under a disc of 30 deg, and a black plate of 0.4 m at 1 m above the
+  // visible point, smaller than the disc: E = pi L (sin^2(30 deg) - F), F of a parallel square on
+  // the axis, 4/pi x atan(x) with x = 0.2 / sqrt(1 + 0.2^2).
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
   const std::uint32_t black = builder.material(tests::grey(0.0));
@@ -77,8 +77,8 @@ TEST(PathTracer, RectangleLampOnAPlateIsItsFormFactor) {
 }
 
 TEST(PathTracer, SmallAndLargeEmittersGiveTheSameFormFactor) {
-  // An emitting square over a plate, sampled where it is a small part of the area, met by paths
-  // where it is a large one; radiance rho M F / pi in both.
+  // An emitting square above a plate: by shadow rays if it is a small part of the area, hit by
+  // paths if it is a large one; radiance rho M F / pi in both cases.
   const double x = 0.5 / std::sqrt(1.25);
   const double exact = 0.5 * 100.0 / base::pi * 4.0 / base::pi * x * std::atan(x);
   for (const double floor_m : {1.0, 10.0}) {
@@ -150,9 +150,9 @@ TEST(PathTracer, LayersOfLightGroupsAddUpToThePicture) {
 }
 
 TEST(PathTracer, VarianceIsThatOfThePixelsMean) {
-  // 256 pixels that see the same thing: their spread is what each says of itself. The ratio of the
-  // two has a relative standard error of sqrt(2 / 255), a little more for skewed paths (kurtosis
-  // 3.3 of the pixels' means at 64 paths leaves it below 0.1).
+  // 256 pixels with the same view: their spread equals each pixel's stated variance. The ratio has
+  // a relative standard error of sqrt(2 / 255), a little more for skewed paths (kurtosis 3.3 of the
+  // pixels' means at 64 paths leaves it below 0.1).
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
   builder.scene.earth = uniform_earth(40.0);
@@ -165,8 +165,8 @@ TEST(PathTracer, VarianceIsThatOfThePixelsMean) {
 
 TEST(PathTracer, StatesTheErrorOfLightThatIsNotSeenStraightFromASource) {
   // A wall and the edge of a lamp in view. Two pictures of independent paths differ by twice the
-  // squared error that each states, over the pixels that count and with their weights. The lamp's
-  // edges, a hundred times as bright as the wall, are in neither.
+  // squared error that each states, over the pixels that count and with their weights. Both exclude
+  // the lamp's edges, a hundred times brighter than the wall.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.room({m, m, m, m, m, m});
@@ -197,9 +197,9 @@ TEST(PathTracer, StatesTheErrorOfLightThatIsNotSeenStraightFromASource) {
   EXPECT_LT(4.0 * doubt, squares);   // so that the law can fail
 }
 
-// A million paths take seconds: whoever wants to stop does not wait for a pixel's last. Of 512
-// paths each pixel asks twice: where the sixth time says so, two of four pixels are there and half
-// of a third, and all their camera rays are counted.
+// A million paths take seconds: a stop must not wait for the last path of a pixel. With 512 paths
+// each pixel queries twice. After a stop at the sixth query, two of four pixels and half of a third
+// are traced, and all their camera rays are counted.
 TEST(PathTracer, AStopDoesNotWaitForAPixelOfManyPaths) {
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The residual of the solution, added to pictures: whatever the solution is like, pictures have the
-// right mean.
+// Residual paths: pictures have the right mean for any solution.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,10 +23,10 @@ struct Means {
   double mean = 0.0, standard_error = 0.0;
 };
 
-// All is grey there, so that green tells: of the picture, and of the light of both groups.
+// The scene is grey, so that green suffices: of the picture, and of both groups' layers.
 constexpr std::array channels = {"G", "light_lamp.G", "light_panels.G"};
 
-// Of every pixel the object at its centre, from 0 on; there is one everywhere.
+// The object at the centre of every pixel, from 0 on; every pixel has one.
 const std::vector<float>& objects() {
   static const std::vector<float> seen = [] {
     RenderOptions options;
@@ -40,8 +39,8 @@ const std::vector<float>& objects() {
 }
 constexpr std::size_t room_objects = 7;  // walls and the block, which is the last
 
-// Of pictures that differ by their seed, per channel: the mean of all pixels, and those of every
-// object's that is seen.
+// Per channel, for pictures with different seeds: the mean of all pixels, and of every visible
+// object's pixels.
 template <class Draw>
 std::vector<Means> means_of(const Draw& draw) {
   std::array<double, 1 + room_objects> pixels{};
@@ -158,7 +157,7 @@ TEST(Residual, AHundredThousandPatchesGiveTheTruth) {
 }
 
 TEST(Residual, EachGroupOfLightHasItsTruthWhereOneIsWrong) {
-  // Twice the lamp's light and none of the wall's; then the other way about.
+  // Twice the lamp's light and none of the wall's; then the reverse.
   for (const std::size_t twice : {std::size_t{0}, std::size_t{1}}) {
     radiosity::Solution solution = scaled(1.0);
     ASSERT_EQ(solution.columns, 6U);
@@ -171,7 +170,7 @@ TEST(Residual, EachGroupOfLightHasItsTruthWhereOneIsWrong) {
   }
 }
 
-// A room whose walls send out 1 - rho and reflect rho: B = 1 everywhere.
+// A room whose walls emit 1 - rho and reflect rho: B = 1 everywhere.
 struct Furnace {
   explicit Furnace(double reflectance) {
     const std::uint32_t wall = builder.material(tests::grey(reflectance, 1.0 - reflectance));
@@ -199,8 +198,8 @@ struct Furnace {
 };
 
 TEST(Residual, OfAFurnaceIsZeroOnEverySample) {
-  // Every bracket S + T L~ - L~ is (1 - rho) + rho - 1 over pi, so that pictures are exact without
-  // a sample of noise; and walks end, however much the walls reflect.
+  // Every term S + T L~ - L~ is (1 - rho) + rho - 1 over pi, so that pictures are exact without
+  // noise; and paths end for any reflectance.
   for (const double reflectance : {0.6, 0.9999999}) {
     const Frame frame = Furnace(reflectance).picture(1);
     for (const float v : frame.image.find("G")->values) {
@@ -211,8 +210,8 @@ TEST(Residual, OfAFurnaceIsZeroOnEverySample) {
 }
 
 TEST(Residual, LongWalksThatEndEarlyLoseNothing) {
-  // Of the light in a furnace of 0.99 there is 0.99^128 = 28 % after more than 128 reflections,
-  // from where on walks end at doublings; a solution of zeros leaves all of it to them.
+  // Of the light in a furnace of 0.99, 0.99^128 = 28 % has more than 128 reflections, from where on
+  // paths end at doublings; a solution of zeros leaves all of it to them.
   Furnace furnace(0.99);
   for (auto* values : {&furnace.solution.radiosity, &furnace.solution.indirect_radiosity}) {
     std::ranges::fill(*values, 0.0F);
@@ -229,7 +228,7 @@ TEST(Residual, LongWalksThatEndEarlyLoseNothing) {
   for (const double one : means) squares += (one - mean) * (one - mean);
   const double standard_error = std::sqrt(squares / (count - 1.0) / count);
   EXPECT_NEAR(mean, 1.0 / base::pi, 4.0 * standard_error);
-  EXPECT_LT(standard_error, 0.02 / base::pi);  // what is lost otherwise is ten times as much
+  EXPECT_LT(standard_error, 0.02 / base::pi);  // lost light would be ten times as much
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edges in pictures drawn by settings: a pixel has the share of itself that is covered.
+// Edges in pictures with fixed numbers of samples: a pixel's value is its covered share.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,14 +12,14 @@
 namespace earthshine::raytrace {
 namespace {
 
-// The line of points with normal . (x, y) = at; what lies beyond it is covered.
+// The line of points with normal . (x, y) = at; the half plane beyond it is covered.
 struct HalfPlane {
   double normal_x, normal_y, at;
   [[nodiscard]] double beyond(double x, double y) const { return normal_x * x + normal_y * y - at; }
 };
 
-// The share of the unit square at (x, y) that a half plane covers: its corners clipped by the line,
-// and the area of the polygon that is left.
+// The share of the unit square at (x, y) that a half plane covers: area of the square clipped by
+// the line.
 double covered(const HalfPlane& half, double x, double y) {
   const std::array<std::array<double, 2>, 4> corner = {
       {{x, y}, {x + 1, y}, {x + 1, y + 1}, {x, y + 1}}};
@@ -40,8 +40,8 @@ double covered(const HalfPlane& half, double x, double y) {
   return 0.5 * twice;
 }
 
-// 96 x 96 pixels, one a unit of the scene wide and high, of the plane z = 0 seen from straight
-// above; x to the right and y down in the picture.
+// 96 x 96 pixels of the plane z = 0 seen from above, each one unit wide and high; x to the right
+// and y down in the picture.
 constexpr int edge_px = 96;
 
 RenderOptions by_settings() {
@@ -69,14 +69,14 @@ scenes::Sun point_sun(const Vec3& direction) {
   return sun;
 }
 
-// What a picture may be off by at an edge. 16 samples of a pixel fall one into each of 4 x 4 equal
-// squares, anywhere in it. A straight line meets at most 7 of them, and which side of it the sample
-// there falls on is off by c (1 - c) squared, 1/6 in the mean over places of the line: root mean
-// square sqrt(7 / 6) / 16 over all pixels, and with 1/4 in each four times sqrt(7 / 4) / 16 in any.
-// Of 4 samples it would be sqrt(3 / 6) / 4, where the line meets at most 3 of 2 x 2.
+// Allowed error at an edge. Each of 4 x 4 equal squares of a pixel has one of 16 samples, at a
+// uniform position. A straight line crosses at most 7 of them. There the squared error is
+// c (1 - c), 1/6 on average over positions of the line: the RMS error is sqrt(7 / 6) / 16 over all
+// pixels, and with 1/4 in each square four times sqrt(7 / 4) / 16 in any pixel. With 4 samples it
+// would be sqrt(3 / 6) / 4, since the line crosses at most 3 of 2 x 2.
 const double most_rms = std::sqrt(7.0 / 6.0) / 16.0, most_anywhere = std::sqrt(7.0 / 4.0) / 4.0;
 
-// values: over the value of a pixel that is covered whole.
+// values: relative to a fully covered pixel.
 void expect_coverage(const std::vector<float>& values, double whole, const HalfPlane& half) {
   double squares = 0.0;
   int pixels = 0;
@@ -103,7 +103,7 @@ HalfPlane through_the_middle(double angle_deg) {
   return {x, y, (x + y) * middle};
 }
 
-// A big rectangle of the plane z = height, front up, whose near edge is the half plane's line. In
+// A large rectangle of the plane z = height, front up, whose near edge is the half plane's line. In
 // the scene y is up, in the picture down.
 void add_beyond(tests::SceneBuilder& builder, std::uint32_t material, const HalfPlane& half,
                 double height) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lone pixels: what only a sliver of a pixel shows is lit as the surface beside it, and what a
-// mirror shows is shared as what is seen straight.
+// Lone pixels: a sliver of a surface in a pixel has the light of the surface beside it, and
+// surfaces in mirrors are denoised like directly visible ones.
 #include <gtest/gtest.h>
 
 #include "raytrace/render.h"
@@ -9,8 +9,8 @@
 namespace earthshine::raytrace {
 namespace {
 
-// A room all of which sends out 1 - rho and reflects rho: B = 1 and L = 1 / pi everywhere, whatever
-// a pixel shows of what, so that edges have no scatter of their own.
+// A room whose surfaces emit 1 - rho and reflect rho: B = 1 and L = 1 / pi everywhere, for any
+// view, so that edges add no scatter.
 tests::SceneBuilder furnace(const scenes::Material& left_wall) {
   tests::SceneBuilder builder;
   const std::uint32_t wall = builder.material(tests::grey(0.6, 0.4));
@@ -18,9 +18,9 @@ tests::SceneBuilder furnace(const scenes::Material& left_wall) {
   return builder;
 }
 
-// Where half of the solution is left to paths, which find it by chance. A sample without a gather
-// point follows one path, which finds that half with a deviation of about as much: a pixel of four
-// such samples would be off by 0.5 / sqrt(4), 25 %. Means over a surface are off by half a per
+// Half of the solution is left to paths. A sample without a gather point follows one path, which
+// estimates that half with a relative standard deviation of about 1: a pixel of four such samples
+// would have an error of 0.5 / sqrt(4), 25 %. Means over a surface have an error of half a per
 // cent.
 void expect_no_lone_pixels(const scenes::Scene& scene, const Vec3& look_at) {
   const tests::Prepared prepared(scene);

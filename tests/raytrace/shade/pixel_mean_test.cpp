@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pixel of the shared gather, however large, against the closed form of its mean.
+// Large pixels of the shared gather, against the closed form of their means.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,14 +11,14 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Shows the same pixel whether something stands before its middle or not: 3 x 3 pixels, of which
-// the one in the middle looks straight down on a dark floor from the foot of a sunlit wall to w = 2
-// m off it. A long wall of height h that sends out M gives E(x) = M / 2 (1 - x / sqrt(x^2 + h^2))
-// at x from it, of which M / 2 (x - sqrt(x^2 + h^2)) is the integral: in the mean over the pixel
-// ten times what its centre gets. A wall of 100 m lacks less than (w / 50)^2 of that; the wall gets
-// back less than rho / 4 of M. A black speck close to the camera covers the middle fifth of the
-// pixel, across and down. Under a black roof, 30 m up, the wall is little of what the centre's rays
-// meet, and the first few of them may miss it.
+// The middle pixel of 3 x 3 looks straight down on a dark floor from the foot of a sunlit wall to
+// w = 2 m off it. A long wall of height h with exitance M gives
+// E(x) = M / 2 (1 - x / sqrt(x^2 + h^2)) at distance x, with the integral
+// M / 2 (x - sqrt(x^2 + h^2)): the mean over the pixel is ten times the value at its centre. A wall
+// of 100 m lacks less than (w / 50)^2 of that; the wall gets back less than rho / 4 of M. In one
+// case a black speck close to the camera covers the middle fifth of the pixel, across and down. In
+// another, under a black roof at 30 m, few of the centre's rays meet the wall, and the first ones
+// may miss it. The pixel's value must be the same in all cases.
 enum class With { Nothing, Speck, Roof };
 class PixelMean : public ::testing::TestWithParam<With> {};
 
@@ -84,9 +84,8 @@ INSTANTIATE_TEST_SUITE_P(Gather, PixelMean,
                          ::testing::Values(With::Nothing, With::Speck, With::Roof));
 
 // A glossy vault of facets, 2 degrees from one to the next, that turns by 16 degrees across the
-// middle pixel of 3 x 3, under a sunlit strip that is 8 degrees wide. What is behind the pixel's
-// centre mirrors the strip, most of the pixel does not: the picture has the mean
-// of all paths.
+// middle pixel of 3 x 3, under a sunlit strip that is 8 degrees wide. The facet at the pixel's
+// centre mirrors the strip, most of the pixel does not: the picture has the mean of all paths.
 TEST(TurningLobe, IsItsMeanOverThePixel) {
   constexpr double w = 2.0, height = 10.0, step = base::radians(2.0);
   const double radius = w / 2.0 / std::sin(4.0 * step);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many camera samples a pixel gets, and what they read.
+// Numbers of camera samples per pixel, and their gather points.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,8 +31,9 @@ std::vector<std::uint32_t> wanted_by_eye(const PixelSums& sums) {
 }
 
 TEST(PixelSamples, TheEyeGetsMoreSamplesWhereDimNeighboursScatter) {
-  // Samples of the pixel at (3, 3) have the deviation 0.06 about 0.1: more than a third. About 1
-  // they are less, and 0.005 about 0.01 less than a third of a twentieth of the mean, 0.54.
+  // Samples of the pixel at (3, 3) have the standard deviation 0.06 and the mean 0.1: more than a
+  // third. With a mean of 1 it is less, and 0.005 with a mean of 0.01 is less than a third of a
+  // twentieth of the picture's mean, 0.54.
   const auto of_neighbour = [](double luminance, double deviation) {
     PixelSums sums = dim_and_bright(luminance);
     const std::size_t middle = sums.window.index(3, 3);
@@ -61,7 +62,7 @@ TEST(PixelSamples, TheEyeGetsMoreSamplesAtEdgesWhoseSamplesAgree) {
 
 TEST(PixelSamples, LightInANarrowGapIsGatheredOncePerPixel) {
   // The floor of a gap 2 cm wide in pixels of 4 mm: the walls are so near that a tenth of a gather
-  // ray's mean length is less than the way from a pixel's centre to its corner.
+  // ray's mean length is less than the distance from a pixel's centre to its corner.
   tests::SceneBuilder builder;
   const std::uint32_t wall = builder.material(tests::grey(0.5, 100.0));
   builder.quad(wall, {-0.01, -1, 0}, {0.01, -1, 0}, {0.01, 1, 0}, {-0.01, 1, 0});

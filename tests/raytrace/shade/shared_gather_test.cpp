@@ -81,8 +81,8 @@ double mean(const Frame& frame) {
 
 TEST(SharedGather, PictureIsThatOfAllPathsWithinTheStatedErrors) {
   // z = difference / sqrt(sum of both variances). Stated variances are those of independent
-  // samples, so that low-discrepancy ones stay below: the mean of z^2 is at most 1 + what sharing
-  // bends.
+  // samples, and low-discrepancy samples have less: the mean of z^2 is at most 1 plus the bias of
+  // denoising.
   PathOptions paths;
   paths.columns = shared_options().columns;
   paths.rows = shared_options().rows;
@@ -104,7 +104,7 @@ TEST(SharedGather, PictureIsThatOfAllPathsWithinTheStatedErrors) {
               4.0 * quick.report.relative_noise / std::sqrt(n) + 0.005);
 }
 
-// Every pixel has the samples that are set, and every point its rays.
+// Every pixel has the fixed number of samples, and every point its rays.
 TEST(SharedGather, FixedNumbersAreTheSameEverywhere) {
   RenderOptions options = shared_options();
   options.camera_samples = 4;
@@ -173,7 +173,7 @@ TEST(SharedGather, DirectIndirectAndSpecularAddUpToThePicture) {
 }
 
 TEST(SharedGather, LightStraightFromTheEarthIsDirect) {
-  // A plate alone under a wide Earth: nothing else reflects, hence direct is all of the picture.
+  // Only a plate under a wide Earth: nothing else reflects, hence direct is the whole picture.
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 2.0, 0.0, true);
   scenes::Earth earth;
@@ -198,8 +198,8 @@ TEST(SharedGather, LightStraightFromTheEarthIsDirect) {
 }
 
 TEST(SharedGather, PathsBetweenMirrorsHaveNoEnd) {
-  // A closed room whose walls reflect 0.8 and send out M: L = M / pi + 0.8 L, five times what a
-  // wall sends itself; a tenth of it comes over paths of more than ten mirrors.
+  // A closed room whose walls reflect 0.8 and emit M: L = M / pi + 0.8 L, five times the emission;
+  // a tenth of it arrives by paths of more than ten mirrors.
   tests::SceneBuilder builder;
   scenes::Material wall = tests::grey(0.0, 1.0);
   wall.mirror = Rgb(0.8);
@@ -220,8 +220,8 @@ TEST(SharedGather, PathsBetweenMirrorsHaveNoEnd) {
 }
 
 TEST(SharedGather, AStoppedPictureKeepsWhatIsFinished) {
-  // Stopped after any number of questions every pixel shows something; from some number on, some
-  // pixels are finished and others are not.
+  // After a stop at any query every pixel has a value; from some query on, some pixels are finished
+  // and others are not.
   RenderOptions options = shared_options(64, 48);
   const Frame whole = studio().picture(options);
   EXPECT_FALSE(whole.report.stopped);
@@ -248,9 +248,9 @@ TEST(SharedGather, AStoppedPictureKeepsWhatIsFinished) {
 }
 
 TEST(SharedGather, TwoSamplesAreEnoughToBeginWithWhereNoEdgeIsNear) {
-  // A wall alone has no edge, and its pixels get half of the least samples; where two walls meet
-  // some get them all. An error of 1 is reached at once, so that none follow but for the eye's
-  // sake, which sees nothing on the wall.
+  // A wall alone has no edge, and its pixels get half of the least samples; where two walls meet,
+  // some get all of them. An error of 1 is reached at once, so that only samples for the eye
+  // follow, and the wall needs none.
   RenderOptions options = shared_options(96, 80);
   options.error = 1.0;
   const auto samples = [&](const Window& crop) {
@@ -263,9 +263,9 @@ TEST(SharedGather, TwoSamplesAreEnoughToBeginWithWhereNoEdgeIsNear) {
 }
 
 TEST(SharedGather, AStopAtTheFirstQuestionCostsLittle) {
-  // One of 25 pixels of a surface is sampled, with all off-grid points that no pixel serves: less
-  // than half of the rays of the first look all over the picture, which a stop at its end leaves.
-  // At edges two camera samples tell what they are off by.
+  // Samples one of 25 pixels of a surface, and all off-grid points that no pixel serves: less than
+  // half of the rays of the whole initial sampling, as after a stop at its end. At edges two camera
+  // samples give an error.
   RenderOptions options = shared_options(96, 80);
   options.error = 1.0;
   const auto gathered = [&](bool at_once) {

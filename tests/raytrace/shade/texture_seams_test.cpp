@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A texture whose parts belong to different faces: no pixel of a face takes light from the part of
-// another, and what a picture states of its error holds however small its texels are in it.
+// A texture with parts for different faces: no pixel of a face takes light from another part, and
+// the stated error of a picture holds for texels of any size.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,8 +30,8 @@ std::shared_ptr<const scenes::Texture> texture(const Grey& grey) {
   return std::make_shared<const scenes::Texture>(pixels, plain);
 }
 
-// A quad across the view from (-0.5, -0.5) to (0.5, 0.5) that wears the rectangle from `low` to
-// `high` of the texture, lit by a Sun behind the camera.
+// A quad across the view from (-0.5, -0.5) to (0.5, 0.5) with the rectangle from `low` to `high` of
+// the texture, lit by a Sun behind the camera.
 scenes::Scene worn(const std::shared_ptr<const scenes::Texture>& picture, bool emits,
                    const glm::vec2& low, const glm::vec2& high) {
   scenes::Material material = tests::grey(emits ? 0.0 : 0.8, emits ? 1000.0 : 0.0);
@@ -67,12 +67,12 @@ Frame picture_of(const scenes::Scene& scene, double distance_m, double error, st
   return render(prepared, prepared.solve(solve), camera, options);
 }
 
-// The left half is 0.6, the right half black; the quad wears the left one up to the last texel.
+// The left half is 0.6, the right half black; the quad has the left half up to the last texel.
 TEST(TextureSeams, NoPixelTakesLightFromTheOtherSideOfASeam) {
   const auto halves = texture([](int x, int) { return x < atlas_edge / 2 ? 153 : 0; });
   const float last = 0.5F - 0.5F / atlas_edge;
   for (const bool emits : {true, false}) {
-    // Full of it: the quad reaches beyond every pixel. And from afar, where it is 10 pixels wide.
+    // The quad fills the view, extending beyond every pixel; then from afar, 10 pixels wide.
     const scenes::Scene near = worn(halves, emits, {0.002F, 0.0F}, {last, 1.0F});
     const double expected = (emits ? 1000.0 * 0.6 : 0.8 * 0.6 * 1000.0) / base::pi;
     for (const double distance_m : {0.9, 4.5}) {
@@ -99,7 +99,7 @@ scenes::Scene fine_squares() {
 }
 
 struct FoundAndStated {
-  double found = 0.0, stated = 0.0;  // over the mean luminance, root mean square
+  double found = 0.0, stated = 0.0;  // RMS over the mean luminance
 };
 
 FoundAndStated both_errors(const scenes::Scene& scene, double error, double time_limit_s) {
@@ -131,8 +131,8 @@ TEST(TextureSeams, StatedErrorHoldsForTexelsMuchSmallerThanPixels) {
   }
 }
 
-// Where time is up at once, three pixels of four have a single sample, which tells nothing of what
-// it is off by; the statement is that of the fourth.
+// With an expired time limit, three of four pixels have a single sample, which states no error; the
+// fourth pixel states it.
 TEST(TextureSeams, StatedErrorHoldsWhereTimeIsUpAtOnce) {
   const FoundAndStated errors = both_errors(fine_squares(), 0.0, 1e-6);
   EXPECT_GT(errors.found, 0.2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A square of gather points on a plane, and estimates written down by hand.
+// A square of gather points on a plane, and synthetic estimates.
 #pragma once
 
 #include <cstddef>

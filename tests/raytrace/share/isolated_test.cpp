@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gather points that share with none, and what the halves of their own rounds say.
+// Isolated gather points, and their noise from the halves of their own rounds.
 #include "raytrace/share/isolated.h"
 
 #include <gtest/gtest.h>
@@ -19,17 +19,18 @@ using flat_estimate::flat;
 using flat_estimate::pixel;
 using flat_estimate::window;
 
-// Points of a plane, and one behind it, in the middle.
+// Points on a plane, and one behind it, in the middle.
 std::vector<GatherPoint> with_one_behind() {
   std::vector<GatherPoint> points = flat();
   points[pixel(20, 20)].position.z = -9.0F;
   return points;
 }
 
-// Three rounds of 8, 8 and 32 samples, each sample of variance 12 / 12 about 3: the mean of 48 has
-// 1 / 48. As each round's difference is about normal, squares added vary by
+// Three rounds of 8, 8 and 32 samples, each sample of variance 12 / 12 and mean 3: the mean of 48
+// has the variance 1 / 48. Half differences are nearly normal; the variance of their sum of squares
+// is
 //   2 (8 + 8 + 32)^-2 (8^2 + 8^2 + 32^2) = 1
-// of their mean squared, half of what one difference of all would: 2.
+// of its squared mean, half of the value for a single difference: 2.
 TEST(IsolatedPoints, NoiseOfAMeanIsToldByAllOfItsRounds) {
   constexpr int fields = 20000;
   base::Rng rng(base::Key(1, base::Stream::Test, 51));
@@ -54,8 +55,8 @@ TEST(IsolatedPoints, NoiseOfAMeanIsToldByAllOfItsRounds) {
   EXPECT_LT(squared - mean * mean, 1.5);
 }
 
-// Of its part of 8 x 8 pixels all others have halves 2 apart, noise 1 by two samples; its own
-// agree.
+// All other points of the 8 x 8 pixels have halves that differ by 2, noise 1 from two samples; the
+// isolated point's halves agree.
 TEST(IsolatedPoints, LikelyNoiseIsHalfThatOfThoseAround) {
   const Neighbours neighbours(window, with_one_behind());
   const Estimate estimate = estimate_of(
@@ -71,7 +72,7 @@ TEST(IsolatedPoints, LikelyNoiseIsHalfThatOfThoseAround) {
   }
 }
 
-// More samples where there is more noise: what is likely adds up to what is stated.
+// Noisy points have more samples: the predicted noise adds up to the stated noise.
 TEST(IsolatedPoints, LikelyNoiseLeavesTheSumAsItIs) {
   std::vector<GatherPoint> points = flat();
   for (std::size_t p = 0; p < count; ++p) points[p].position.z = -2.0F - 20.0F * float(p);
@@ -91,9 +92,9 @@ TEST(IsolatedPoints, LikelyNoiseLeavesTheSumAsItIs) {
   EXPECT_NEAR(more / size, 0.0, 1e-5);
 }
 
-// OffGrid stand alone without a point of the grid and without mirror neighbours. All of them have
-// halves 0 and 1, noise 1/4 by two samples; the grid has none. Four on one pixel: of 64 + 4 points
-// these have noise.
+// Off-grid points are isolated without a base and without mirror neighbours. All off-grid points
+// here have halves 0 and 1, noise 1/4 from two samples; the grid has no noise. Four on one pixel:
+// of the region's 64 + 4 points, these have noise.
 TEST(IsolatedPoints, StraysStandAloneWithoutAPointOfTheGridOrPeers) {
   const Neighbours neighbours(window, flat());
   const auto there = static_cast<std::uint32_t>(pixel(20, 20));
@@ -110,14 +111,14 @@ TEST(IsolatedPoints, StraysStandAloneWithoutAPointOfTheGridOrPeers) {
   Shared shared = share(neighbours, estimate);
   add_off_grid_points(off_grid_points, estimate, shared);
   shared.inverse_dof[0][count + 2] = shared.inverse_dof[0][count + 3] =
-      0.5F;  // as mirror neighbours leave it
+      0.5F;  // the value for mirror neighbours
   regularise_isolated_variance(neighbours, window, off_grid_points, estimate, shared);
   EXPECT_NEAR(double(shared.variance_prior[count]), 0.5 * (4.0 / 68.0 - 1.0) / 4.0, 1e-6);
   for (std::size_t k = 1; k < off_grid_points.size(); ++k)
     EXPECT_EQ(shared.variance_prior[count + k], 0.0F);
 }
 
-// Relative, of points well within the picture.
+// Relative standard deviation over points far from the border.
 double spread(const std::vector<double>& values) {
   double inner = 0.0, all = 0.0, squared = 0.0;
   for (int y = 16; y < edge_px - 16; ++y) {
@@ -129,10 +130,9 @@ double spread(const std::vector<double>& values) {
   return std::sqrt(squared / inner - mean * mean) / mean;
 }
 
-// Signs are other ones for other samples, so that it is chance where the noise of neighbours
-// cancels: of a plane with noise alone, what is told of it in the mean of 100 varies over the
-// points by about a tenth of what one does (0.16). Were the signs the same for all, a part of it
-// would stay.
+// Signs depend on the samples, so that the cancellation of neighbours' noise is random. For a plane
+// with noise only, the stated error in the mean of 100 fields varies over the points by about a
+// tenth of its variation in one field (0.16). With fixed signs a part would remain.
 TEST(IsolatedPoints, NoiseIsToldByOtherSignsForOtherSamples) {
   constexpr int fields = 100;
   const Neighbours neighbours(window, flat());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Means over neighbours against the double sum that they stand for.
+// Means over neighbours against the double sum.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -10,7 +10,7 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Points of a plane, a fifth of them holes.
+// Points on a plane, a fifth of them holes.
 std::vector<GatherPoint> plane_with_holes(const Window& window, base::Rng& rng) {
   std::vector<GatherPoint> points(window.pixel_count());
   for (std::size_t p = 0; p < points.size(); ++p) {
@@ -24,9 +24,9 @@ std::vector<GatherPoint> plane_with_holes(const Window& window, base::Rng& rng) 
   return points;
 }
 
-// sum over dy of k_dy sum over dx of k_dx w v, over the same of w, of points that are no holes: a
-// row counts by its point in the column. All sizes that make pieces of chains: fewer rows than a
-// step, more than fit into one piece, single rows and columns.
+// sum over dy of k_dy sum over dx of k_dx w v, over the same of w, for points that are no holes; a
+// row counts if its point in the column is no hole. Sizes with all kinds of chains: fewer rows than
+// a step, more rows than a chain, single rows and columns.
 TEST(Neighbours, MeansAreThoseOfTheDoubleSum) {
   constexpr std::array<double, 5> kernel = {1.0 / 16, 1.0 / 4, 3.0 / 8, 1.0 / 4, 1.0 / 16};
   base::Rng rng(base::Key(1, base::Stream::LightSample, 0));

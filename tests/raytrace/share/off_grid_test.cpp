@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gather points off the grid, on estimates written down by hand.
+// Off-grid gather points, with synthetic estimates.
 #include "raytrace/share/off_grid.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace earthshine::raytrace {
 namespace {
 
-// One point of a grid, of value 10, and off-grid points of two samples each.
+// One grid point of value 10, and off-grid points of two samples each.
 struct Written {
   std::vector<OffGridPoint> off_grid_points;
   Estimate estimate;
@@ -24,7 +24,7 @@ struct Written {
     shared.radiance = {glm::vec3(10.0F)};
     shared.resize(1);
   }
-  // Means of the halves of so many samples.
+  // Sets the means of the halves of this number of samples.
   void sample(std::size_t off_grid_point, double first, double second, double samples = 2.0) {
     first *= samples / 2.0, second *= samples / 2.0;
     estimate.clear(1 + off_grid_point);
@@ -45,7 +45,7 @@ TEST(OffGrid, WithoutSamplesTheyTakeWhatTheirSurfaceSays) {
 }
 
 TEST(OffGrid, WithoutSamplesTheyStateWhatTheOthersAreOffBy) {
-  // The others are 2 off what their surface says, without noise: mean square 4.
+  // The others differ by 2 from the shared value, without noise: mean square 4.
   Written written(9);
   for (std::size_t k = 1; k < 9; ++k) written.sample(k, 12.0, 12.0);
   add_off_grid_points(written.off_grid_points, written.estimate, written.shared);
@@ -70,10 +70,9 @@ TEST(OffGrid, WhatIsNoNoiseIsKeptWhole) {
 }
 
 TEST(OffGrid, WhatNoiseHidesIsNotStatedAsNone) {
-  // Halves of 10 - 3 and 10 + 3, whose mean is what the surface says: the squares found, 0, less
-  // the noise q = 9 are below zero. Nothing of their own is kept; the signal may be as much as the
-  // standard error of a mean of nine squares, q sqrt(2 / 9). Four times the samples have a quarter
-  // of that.
+  // Halves of 10 - 3 and 10 + 3, whose mean is the shared value: the mean square, 0, minus the
+  // noise q = 9 is negative. The gain is 0. The signal is set to the standard error of a mean of
+  // nine squares, q sqrt(2 / 9). With four times the samples it is a quarter of that.
   Written written(9);
   for (std::size_t k = 0; k < 9; ++k) written.sample(k, 7.0, 13.0);
   add_off_grid_points(written.off_grid_points, written.estimate, written.shared);
@@ -86,10 +85,10 @@ TEST(OffGrid, WhatNoiseHidesIsNotStatedAsNone) {
 }
 
 TEST(OffGrid, TheirErrorIsAsStated) {
-  // True differences of variance s from what the surface says, means of two samples of noise q:
-  // keeping c of what is found leaves (1 - c)^2 s + c^2 q in the mean. Means of squares of normal
-  // numbers scatter by sqrt(2 / count) of themselves: what is left so, and of what is stated q and
-  // s, which is found as the difference of s + q and q.
+  // True differences of variance s from the shared value, means of two samples with noise q: a gain
+  // c leaves (1 - c)^2 s + c^2 q on average. Means of squares of normal numbers have the relative
+  // standard error sqrt(2 / count): the remaining error, and in the stated one q and s, the latter
+  // as the difference of s + q and q.
   constexpr std::size_t count = 4000;
   for (const double q : {0.1, 0.5, 4.0}) {
     constexpr double s = 1.0;
@@ -120,11 +119,10 @@ TEST(OffGrid, TheirErrorIsAsStated) {
 }
 
 TEST(OffGrid, MoreSamplesAreStatedAsWhatTheyAre) {
-  // A sample has the variance v = 2 wherever it is. A tenth of the off-grid points have 200 of
-  // them, the others 2: the noise of their means is v / 200 and v / 2, and what keeping c of a
-  // difference of variance s leaves of each kind is (1 - c)^2 s + c^2 q by its own q. Means over
-  // the off-grid points of a kind scatter as in the law before this one; v is found from all of
-  // them.
+  // Every sample has the variance v = 2. A tenth of the off-grid points have 200 samples, the
+  // others 2: their means have the noise v / 200 and v / 2. For a difference of variance s, the
+  // gain c leaves (1 - c)^2 s + c^2 q in each class by its q. Means over the points of a class have
+  // the errors of the test above; v comes from all points.
   constexpr std::size_t count = 8000;
   constexpr double s = 1.0, v = 2.0;
   Written written(count);
@@ -152,7 +150,7 @@ TEST(OffGrid, MoreSamplesAreStatedAsWhatTheyAre) {
     const double c =
         double(wiener_gain(static_cast<float>(s), static_cast<float>(q), 1.0F / float(count)));
     const double left = (1.0 - c) * (1.0 - c) * s + c * c * q;
-    // q is found to sqrt(2 / count) of itself, s + q of the others likewise.
+    // q has the relative error sqrt(2 / count), and so has s + q of the others.
     const double error = left * std::sqrt(2.0 / of) +
                          ((1.0 - c) * (1.0 - c) * (s + v) + c * c * q) * std::sqrt(2.0 / count);
     EXPECT_NEAR(stated / of, found / of, 4.0 * error) << samples(kind) << " samples";
@@ -160,7 +158,7 @@ TEST(OffGrid, MoreSamplesAreStatedAsWhatTheyAre) {
   }
 }
 
-// A row of off-grid points, one a pixel, each a mirror neighbour of those up to three away.
+// A row of off-grid points, one per pixel; points up to three pixels apart are mirror neighbours.
 class Row {
  public:
   explicit Row(std::size_t count) : written(count), masks_(count, 0U) {
@@ -168,8 +166,7 @@ class Row {
       written.off_grid_points[k] = {static_cast<std::uint32_t>(k), no_base, 0, 1.0F};
       first_.push_back(static_cast<std::uint32_t>(k));
       for (std::size_t q = k < 3 ? 0 : k - 3; q <= std::min(count - 1, k + 3); ++q) {
-        masks_[k] |= std::uint64_t{1}
-                     << (24 + q - k);  // the middle one of 7 x 7 is the off-grid point's
+        masks_[k] |= std::uint64_t{1} << (24 + q - k);  // the off-grid point is the middle of 7 x 7
       }
     }
     first_.push_back(static_cast<std::uint32_t>(count));
@@ -194,8 +191,8 @@ TEST(MirrorNeighbourhood, WhatIsNoNoiseIsKeptWhole) {
 }
 
 TEST(MirrorNeighbourhood, NoiseOfOneSurfaceIsTheirMeans) {
-  // Means of two samples of noise 2 q: seven of them leave q / 7 of q where nothing of their own is
-  // kept. What is kept by chance, where seven pairs happen to differ by little, is stated too.
+  // Means of two samples of noise 2 q: the mean of seven leaves q / 7 if the gain is 0. Where seven
+  // pairs happen to differ little, the gain is positive by chance, and its part is stated, too.
   constexpr std::size_t count = 4000;
   constexpr double q = 0.5;
   Row row(count);
@@ -220,9 +217,9 @@ TEST(MirrorNeighbourhood, NoiseOfOneSurfaceIsTheirMeans) {
 
 TEST(MirrorNeighbourhood, MoreSamplesAreStatedAsWhatTheyAre) {
   // A sample has the variance v = 2; every tenth off-grid point has 200, its six mirror neighbours
-  // 2 each. They differ by far more than that, so that all of their own is kept: what is stated is
-  // v / 200, and the noise of the mean of all seven, (6 v / 2 + v / 200) / 7^2. Both are found from
-  // the squares of six normal numbers at each of 400 places.
+  // 2 each. Their differences are far larger, so that the gain is 1. The stated error is v / 200,
+  // and the noise of the mean of all seven is (6 v / 2 + v / 200) / 7^2. Both come from the squares
+  // of six normal numbers at each of 400 places.
   constexpr std::size_t count = 4000;
   constexpr double v = 2.0;
   Row row(count);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What neighbouring gather points share, on estimates written down by hand.
+// Denoising between neighbouring gather points, with synthetic estimates.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,7 +14,7 @@ namespace earthshine::raytrace::flat_estimate {
 namespace {
 
 TEST(Share, WhatBothHalvesAgreeOnIsKept) {
-  // No noise: every detail is signal, however fine, and nothing is off.
+  // Without noise every detail is signal, however fine, and the error is 0.
   const auto fine = [](int x, int y, std::size_t) {
     return 10.0 + ((x / 3 + y / 5) % 2) + 0.1 * x;
   };
@@ -28,9 +28,9 @@ TEST(Share, WhatBothHalvesAgreeOnIsKept) {
 }
 
 TEST(Share, NoiseFallsAndNoLessIsStated) {
-  // Independent noise of variance 1 a sample on 10; the mean of two has 1/2. Over 200 fields, one
-  // point each: the squares found have a relative standard error of sqrt(2 / 200). What seems to be
-  // signal by chance may be stated besides.
+  // Independent noise of variance 1 per sample, mean 10; the mean of two has 1/2. Over 200 fields,
+  // at one point each: squared errors have a relative standard error of sqrt(2 / 200). Chance
+  // signals may increase the stated error.
   constexpr int fields = 200;
   const Neighbours neighbours(window, flat());
   double found = 0.0, stated = 0.0;
@@ -47,10 +47,10 @@ TEST(Share, NoiseFallsAndNoLessIsStated) {
   EXPECT_LT(stated, 0.5 / 8.0);
 }
 
-// A detail of signal s and noise q of which c = sure / (sure + q), sure = s - 0.3 q, is kept leaves
-// (1 - c)^2 s + c^2 q; here s = 2 q, c = 17 / 27. A finer one that nothing is kept of is held
-// between none and that signal. A off-grid point has no coarser details, and one that is kept is
-// what it was found to be: s = 200, q = 100.
+// A detail of signal s and noise q with the gain c = s' / (s' + q), s' = s - 0.3 q, leaves
+// (1 - c)^2 s + c^2 q; here s = 2 q, c = 17 / 27. The signal of a finer detail with gain 0 is
+// limited to the range from 0 to that signal. An off-grid point has no coarser details, and a
+// detail with a positive gain keeps its signal: s = 200, q = 100.
 TEST(Share, WhatNoiseHidesIsNoMoreThanCoarserDetailsHold) {
   Shared shared;
   shared.resize(4);
@@ -65,9 +65,9 @@ TEST(Share, WhatNoiseHidesIsNoMoreThanCoarserDetailsHold) {
   EXPECT_NEAR(shared.squared_error_with(3, 1.0), 101.0 * coarser, 1e-4);
 }
 
-// Of a signal found by N = 8 details, off by sqrt(2 / 8) q by chance, as much again times 0.7 is
-// doubted: sure = 2 - 0.3 - 0.35 = 1.35 and c = 1.35 / 2.35 for s = 2, q = 1. To what that leaves
-// Stein's term is added, 4 (s + q) (1 - c)^2 / N.
+// A signal from N = 8 details has the standard error sqrt(2 / 8) q, of which 0.7 is subtracted:
+// s' = 2 - 0.3 - 0.35 = 1.35 and c = 1.35 / 2.35 for s = 2, q = 1. Stein's term,
+// 4 (s + q) (1 - c)^2 / N, is added to the remaining error.
 TEST(Share, WhatFewDetailsSayIsDoubtedMore) {
   Shared shared;
   shared.resize(1);
@@ -79,8 +79,8 @@ TEST(Share, WhatFewDetailsSayIsDoubtedMore) {
 }
 
 TEST(Share, NothingIsSharedAcrossAnEdgeOrAStep) {
-  // Two planes that meet at x = 20, turned by 90 degrees or half a metre apart, of unlike light and
-  // as much noise: the means of each stay its own.
+  // Two planes that meet at x = 20, turned by 90 degrees or half a metre apart, with different
+  // light and equal noise: the means stay separate.
   for (const bool step : {false, true}) {
     std::vector<GatherPoint> points = flat();
     for (int y = 0; y < edge_px; ++y) {
@@ -113,10 +113,10 @@ TEST(Share, PointsThatHaveNoSamplesTakeThoseAround) {
 }
 
 TEST(Share, WhatFewPointsSayLeavesNoLattice) {
-  // One point of 25 is sampled, and its samples are noise. Coarser levels step over pixels, so that
-  // neighbours read other points; yet they should differ no more than what leads from one point to
-  // the next, five pixels on: a fifth of the difference of two independent values, 2 / 25 of their
-  // mean square each, or twice that with what is kept of details.
+  // One point of 25 is sampled, with noise only. Coarser levels step over pixels, so that
+  // neighbouring pixels read different points. Yet they should differ by no more than one step of a
+  // linear transition between points five pixels apart: a fifth of the difference of two
+  // independent values, 2 / 25 of their mean square each, or twice that with the remaining details.
   const Neighbours neighbours(window, flat());
   double off = 0.0, apart = 0.0;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
@@ -138,9 +138,9 @@ TEST(Share, WhatFewPointsSayLeavesNoLattice) {
   EXPECT_LT(apart, 4.0 / 25.0 * off);
 }
 
-// Two samples, uniform over [0, 1), are off in the mean by a variance of 1 / 24. A point whose two
-// happen to agree is told so by the others: by 4 fields of noise over windows of some 60 points
-// each, within a factor of two.
+// Means of two samples, uniform over [0, 1), have the variance 1 / 24. The other points state it
+// for a point whose two samples happen to agree: with 4 noise fields over windows of about 60
+// points, within a factor of two.
 TEST(Share, WhatKeepsAllOfItsOwnStillTellsNoiseByOthers) {
   base::Rng rng(base::Key(3, base::Stream::Test, 4));
   const Estimate estimate = estimate_of([&](int, int, std::size_t) { return rng.next(); });
@@ -157,8 +157,8 @@ TEST(Share, WhatKeepsAllOfItsOwnStillTellsNoiseByOthers) {
   EXPECT_NEAR(mean, 1.0 / 24.0, 4.0 * std::sqrt(7.0 / 2880.0 / count));
 }
 
-// A point without neighbours has its own two halves alone: 0 and 1 are off by a variance of (0 -
-// 1)^2 / 4.
+// A point without neighbours has only its own two halves: for 0 and 1 the variance is
+// (0 - 1)^2 / 4.
 TEST(Share, WhatIsAloneTellsItsNoiseByItsHalves) {
   std::vector<GatherPoint> points = flat();
   for (std::size_t p = 1; p < count; ++p) points[p].reach_m = -1.0F;
@@ -181,10 +181,10 @@ TEST(Share, MoreSamplesAreExpectedToHelp) {
 }
 
 TEST(Share, ManySamplesKeepTheirOwnAmongFew) {
-  // Light of its own at every point, of variance s = 0.2, and samples of variance v = 2: 200 in
-  // blocks of 3 x 3, 2 elsewhere. Keeping all of its own leaves a point of many v / 200; sharing
-  // that knows its noise leaves no more (Wiener: s q / (s + q) < q), in the mean of N squares of
-  // normal numbers within sqrt(2 / N) of itself.
+  // Different light at every point, of variance s = 0.2, and samples of variance v = 2: 200 in
+  // blocks of 3 x 3, 2 elsewhere. Without denoising, a point of a block has the error v / 200.
+  // Denoising with the right noise leaves no more (Wiener: s q / (s + q) < q), in a mean of N
+  // squares of normal numbers with the relative error sqrt(2 / N).
   constexpr double s = 0.2, v = 2.0, many = 200.0;
   base::Rng rng(base::Key(5, base::Stream::Test, 31));
   const auto normal = [&] {

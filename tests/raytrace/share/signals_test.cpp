@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What chance makes of a signal, and what is stated of it.
+// Chance signals, and the stated variance of the signal.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,14 +12,14 @@
 namespace earthshine::raytrace::flat_estimate {
 namespace {
 
-// Of a signal that is not there: its square, less the variance that is stated.
+// Where the true signal is 0: its square minus the stated variance.
 double more_than_stated(const Shared& shared, std::size_t p, std::size_t level) {
   const double noise = double(shared.noise[level][p]), found = double(shared.signal[level][p]);
   return found * found - noise * noise * 2.0 * double(shared.inverse_dof[level][p]);
 }
 
-// The left columns are another surface, whose signals, alike in both halves, differ by so much more
-// than chance that every window of the picture is taken at its word.
+// The left columns are another surface, whose signals vary so much more than by chance that no
+// window is moved toward the common ratio.
 constexpr int strip_px = 8;
 std::vector<GatherPoint> with_a_strip() {
   std::vector<GatherPoint> points = flat();
@@ -32,7 +32,7 @@ double strip_signal(std::size_t p) {
   return p % edge_px < strip_px ? 1e4 * base::uniform(base::Key(1, base::Stream::Test, p), 0) : 0.0;
 }
 
-// A mean of zero, by the scatter between the values.
+// Expects a mean of zero, within the scatter of the values.
 void expect_none(const std::vector<double>& values) {
   const auto n = static_cast<double>(values.size());
   double mean = 0.0, square = 0.0;
@@ -41,9 +41,10 @@ void expect_none(const std::vector<double>& values) {
 }
 
 TEST(Signals, ASmoothPictureStatesLittleThatNoiseMayHide) {
-  // Noise alone. Each window's signal is off by chance by sigma = q sqrt(2 / N), 100 details, and
-  // of what is above zero sigma / sqrt(2 pi) would be stated in the mean. The mean of the plane's
-  // 48^2 / 100 windows is off by a fifth of that, and so is the share that is left to each.
+  // Noise only. Each window's signal has the standard error sigma = q sqrt(2 / N), 100 details; its
+  // positive part, sigma / sqrt(2 pi) on average, would be stated. The mean of the plane's
+  // 48^2 / 100 windows has an error of a fifth of that, and so has the remaining share of each
+  // window.
   constexpr int fields = 50;
   const Neighbours neighbours(window, flat());
   double found = 0.0, stated = 0.0, alone = 0.0;
@@ -66,9 +67,9 @@ TEST(Signals, ASmoothPictureStatesLittleThatNoiseMayHide) {
 }
 
 TEST(Signals, HowFarOffASignalIsByChanceIsStated) {
-  // One sample of ten brings all the light: there is no signal, and what is found, the difference
-  // of two chance squares over a window, has the variance q^2 2 / N, of details of 1 to 8 pixels.
-  // In the mean over 400 fields, by the scatter between them.
+  // One of ten samples has all the light: the signal is 0, and its estimate, the difference of two
+  // chance squares over a window, has the variance q^2 2 / N, for details of 1 to 8 pixels. In the
+  // mean over 400 fields, within their scatter.
   constexpr int fields = 400;
   const Neighbours neighbours(window, with_a_strip());
   std::array<std::vector<double>, 4> more;
@@ -87,9 +88,9 @@ TEST(Signals, HowFarOffASignalIsByChanceIsStated) {
 }
 
 TEST(Signals, HowFarOffASignalIsByChanceGoesByTheSamplesThere) {
-  // Noise of variance 1 a sample, 64 of them in each half of blocks of 2 x 2, one block of four,
-  // and one in the halves elsewhere: s and q of a point are those of as many samples as it has. As
-  // above, for a point of many and one of few.
+  // Noise of variance 1 per sample. Blocks of 2 x 2, one block of four, have 64 samples in each
+  // half, all other points one: s and q of a point are for its own number of samples. As above, for
+  // a point of each class.
   constexpr int fields = 400;
   const Neighbours neighbours(window, with_a_strip());
   std::array<std::vector<double>, 2> more;

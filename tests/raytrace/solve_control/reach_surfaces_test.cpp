@@ -23,9 +23,9 @@ SteeredSolution reached(const scenes::Scene& scene, double error, std::uint64_t 
   return reach_surfaces(prepared, wanted, seed, {});
 }
 
-// An error that falls as the fourth root of the rays is halved by 16 times as many, however much
-// the last pass states by chance: here a tenth more and, of the one before, less. What does not
-// fall is far off, and what falls fast from far above is not.
+// An error that falls as the fourth root of the rays is halved by 16 times as many rays, even if
+// the last stated errors deviate by chance: here the last one by +10 %, the previous one by -10 %.
+// A constant error is far off; a large error that falls fast is not.
 TEST(ReachSolution, ASinglePassDoesNotTellHowFarTheEndIs) {
   std::vector<PassError> passes;
   for (const double rays : {1.0, 2.0, 4.0, 8.0, 16.0, 32.0}) {
@@ -41,14 +41,15 @@ TEST(ReachSolution, ASinglePassDoesNotTellHowFarTheEndIs) {
   EXPECT_FALSE(is_far_off({{7.9, 0.1}, {8.0, 0.1005}}, 0.05));
 }
 
-// What was reached has no limit, however little the last solve brought, and what was not has one.
+// A solution within the error has no limit, however little the last solve improved it; any other
+// has one.
 TEST(ReachSolution, OfSurfacesALimitIsNamedWhereTheErrorIsNotReachedAndThereAlone) {
   scenes::Scene held = tests::small_room().scene;
   held.quality.max_patches = 60;
   int reached_it = 0, missed_it = 0;
   for (const double error : {0.2, 0.15, 0.1, 0.07, 0.03}) {
     for (const scenes::Scene* scene : {&std::as_const(held), &tests::small_room().scene}) {
-      if (error < 0.05 && scene != &held) continue;  // takes long
+      if (error < 0.05 && scene != &held) continue;  // slow
       const SteeredSolution solution = reached(*scene, error);
       const bool enough = solution.surface.parts.total().estimate <= error;
       EXPECT_EQ(solution.limit == Limit::None, enough) << error;
@@ -59,9 +60,8 @@ TEST(ReachSolution, OfSurfacesALimitIsNamedWhereTheErrorIsNotReachedAndThereAlon
   EXPECT_GT(missed_it, 0);
 }
 
-// The Sun shines through a hole of 10 cm onto the floor of a room of 80 m2: a spot that the sixteen
-// points of a patch miss more often than not. That nothing is lit is not said of it, whatever the
-// seed.
+// The Sun shines through a hole of 10 cm onto the floor of a room of 80 m2: the sixteen points of a
+// patch usually miss the spot. The solution must not be black for any seed.
 TEST(ReachSolution, OfSurfacesASpotOfSunlightIsFound) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.6));
@@ -80,7 +80,7 @@ TEST(ReachSolution, OfSurfacesASpotOfSunlightIsFound) {
   builder.scene.sun = scenes::Sun();
   builder.scene.sun->direction = Vec3(0, 0, 1);
   builder.scene.sun->illuminance_lx = Rgb(1e5);
-  builder.scene.quality.form_factor_rays = 64;  // the light itself is what is looked for
+  builder.scene.quality.form_factor_rays = 64;  // the test is about light, not form factors
   builder.scene.quality.refine = false;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const SteeredSolution found = reached(builder.scene, 0.5, seed);
@@ -92,8 +92,8 @@ TEST(ReachSolution, OfSurfacesASpotOfSunlightIsFound) {
 
 enum class Pane { None, Glass, Mirror };
 
-// A bare lamp on the floor of a closed room, which is taken to be 0.1 mm above it; a pane that
-// parts the room, 5 cm above the lamp.
+// A bare lamp on the floor of a closed room, treated as 0.1 mm above it, and a pane across the room
+// 5 cm above the lamp.
 scenes::Scene lamp_on_the_floor(Pane kind) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
@@ -113,8 +113,8 @@ scenes::Scene lamp_on_the_floor(Pane kind) {
   return builder.scene;
 }
 
-// Half of its light lands on so small a spot that cosine rays do not find it again; those that are
-// aimed at bright patches do. Of a lamp of Phi the walls send rho Phi / (1 - rho) in all.
+// Half of its light lands on a spot so small that cosine-distributed rays miss it; rays aimed at
+// bright patches find it. For a lamp of flux Phi, the walls send rho Phi / (1 - rho) in all.
 TEST(ReachSolution, OfALampOnTheFloorAllLightIsFoundThroughASheetOfGlassToo) {
   for (const Pane pane : {Pane::None, Pane::Glass}) {
     const SteeredSolution found = reached(lamp_on_the_floor(pane), 0.1);
@@ -129,9 +129,9 @@ TEST(ReachSolution, OfALampOnTheFloorAllLightIsFoundThroughASheetOfGlassToo) {
   }
 }
 
-// A lamp gives its flux, whatever its samples found, and in a closed room all of it lands: 4 pi I,
-// and of a spot of half a degree I 2 pi (1 - (cos(beam / 2) + cos(field / 2)) / 2). The walls send
-// rho Phi / (1 - rho) in all.
+// A lamp emits its flux, whatever its samples found, and in a closed room all of it lands: 4 pi I,
+// or for a spot lamp of half a degree I 2 pi (1 - (cos(beam / 2) + cos(field / 2)) / 2). The walls
+// send rho Phi / (1 - rho) in all.
 TEST(ReachSolution, OfSurfacesALampInAClosedRoomGivesAndLandsItsFlux) {
   for (const double field_deg : {360.0, 5.0, 0.5}) {
     scenes::Scene scene = lamp_on_the_floor(Pane::None);
@@ -158,8 +158,8 @@ TEST(ReachSolution, OfSurfacesALampInAClosedRoomGivesAndLandsItsFlux) {
   }
 }
 
-// Aimed rays do not go by mirrors, which alone show one part of this floor to another. A closed
-// room has to keep all light: what is missing there is the least that the solution may be off by.
+// Aimed rays do not follow mirrors, the only connection between parts of this floor. A closed room
+// must conserve energy: the ledger's defect is the least error of the solution.
 TEST(ReachSolution, OfSurfacesTheErrorIsNoLessThanWhatTheLedgerLacks) {
   const SteeredSolution found = reached(lamp_on_the_floor(Pane::Mirror), 0.1);
   const radiosity::GroupLedger& all = found.solution.report.groups.front();
@@ -168,7 +168,7 @@ TEST(ReachSolution, OfSurfacesTheErrorIsNoLessThanWhatTheLedgerLacks) {
   EXPECT_EQ(found.limit, Limit::Ledger);
 }
 
-// The most that fits is found to a 64th, from below, and what sets it is told.
+// Finds the largest number that fits within 1/64, from below, and its cause.
 TEST(PatchBound, IsTheLeastOfWhatIsAllowedAndNamesIt) {
   scenes::Quality given;
   Wanted wanted;
@@ -183,11 +183,11 @@ TEST(PatchBound, IsTheLeastOfWhatIsAllowedAndNamesIt) {
   EXPECT_EQ(bound().most, 5000U);
   EXPECT_EQ(bound().of, Limit::Settings);
   wanted.fits = [](double, int) { return false; };
-  EXPECT_EQ(bound().most, 1000U);  // they are there
+  EXPECT_EQ(bound().most, 1000U);  // the first patches always remain
 }
 
-// Where memory would not hold the most of all, and what fits is not reached either, memory is not
-// what came first; where it holds no more than there are, it is.
+// Memory is not named as the limit if the solve ends below the number that fits, even if memory
+// does not hold the largest number. It is named if memory holds no more than the first patches.
 TEST(ReachSolution, OfSurfacesMemoryIsNamedWhereItIsWhatCameFirst) {
   const tests::Prepared prepared(tests::small_room().scene);
   for (const bool tight : {false, true}) {
@@ -204,8 +204,8 @@ TEST(ReachSolution, OfSurfacesMemoryIsNamedWhereItIsWhatCameFirst) {
   }
 }
 
-// Whenever it is stopped, at the first time it asks or later, all that was found so far is kept:
-// light that is whole, and at the first the patches of the first solve.
+// A stop at the first or any later query keeps the results so far: complete light, and at the first
+// query the patches of the first solve.
 TEST(ReachSolution, OfSurfacesAStopKeepsWhatThereIs) {
   const tests::Prepared prepared(tests::small_room().scene);
   std::size_t first = 0, most = 0;
@@ -231,8 +231,8 @@ TEST(ReachSolution, OfSurfacesAStopKeepsWhatThereIs) {
   EXPECT_GT(most, first);
 }
 
-// By a clock that goes on by `pass_s` in each pass over all patches and not otherwise; a limit of 0
-// is past from the start.
+// With a clock that advances by `pass_s` in each pass over all patches and not otherwise; a limit
+// of 0 is exceeded from the start.
 SteeredSolution within(double limit_s, double pass_s) {
   const tests::Prepared prepared(tests::small_room().scene);
   double now = limit_s > 0.0 ? 0.0 : 1.0;
@@ -250,8 +250,8 @@ SteeredSolution within(double limit_s, double pass_s) {
   return reach_surfaces(prepared, wanted, 1, {}, stage);
 }
 
-// Where no time is left the error of the first solve is stated, and nothing else is begun: one
-// step, on the patches of the first cut.
+// Without remaining time, the error of the first solve is stated and nothing else begins: one step,
+// with the first patches.
 TEST(ReachSolution, OfSurfacesPastTheTimeLimitIsTheFirstSolveWithItsError) {
   const SteeredSolution late = within(0.0, 0.0);
   EXPECT_EQ(late.limit, Limit::Time);
@@ -264,8 +264,7 @@ TEST(ReachSolution, OfSurfacesPastTheTimeLimitIsTheFirstSolveWithItsError) {
 }
 
 // A pass of 0.45 of the limit leaves 0.55: the next one may cast 0.55 / 0.45 = 1.2 times its rays,
-// twice with what numbers of rays are rounded up to, and 128 more on each patch, the fewest there are,
-// where without a limit it casts 2^20.
+// times two for rounding up, and 128 more per patch, the minimum. Without a limit it casts 2^20.
 TEST(ReachSolution, OfSurfacesNoPassIsBegunThatTheTimeLeftDoesNotPayFor) {
   const SteeredSolution found = within(1.0, 0.45);
   EXPECT_EQ(found.limit, Limit::Time);
@@ -276,8 +275,8 @@ TEST(ReachSolution, OfSurfacesNoPassIsBegunThatTheTimeLeftDoesNotPayFor) {
   EXPECT_LE(rays(1), 2.0 * rays(0) + 128.0 * double(found.steps[1].patches));
 }
 
-// Passes of 0.3 of the limit: 0.6 is gone by the end of the second and leaves 0.4 for a third of
-// 1.2 x 0.3, 0.9 by the end of that.
+// Passes of 0.3 of the limit: the second ends at 0.6 and leaves 0.4 for a third of 1.2 x 0.3, which
+// ends at 0.9.
 TEST(ReachSolution, OfSurfacesTheTimeThatPaysForAnotherPassIsUsed) {
   const SteeredSolution found = within(1.0, 0.3);
   EXPECT_EQ(found.limit, Limit::Time);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Of a solve's gather rays some are aimed at bright patches.
+// Some of a solve's gather rays are aimed at bright patches.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,17 +11,17 @@
 namespace earthshine::raytrace {
 namespace {
 
-// What gather rays bring to patch 0 in the mean of all passes, its standard error, and the
-// deviation of one.
+// Mean illuminance of patch 0 by gather rays over all passes, its standard error, and the standard
+// deviation of one pass.
 struct Brought {
   double mean = 0.0, error = 0.0, deviation = 0.0;
 };
 
-// From patch 1, of 1000 lm/m2, over a dark ground.
+// From patch 1, of 1000 lm/m2, above a dark ground.
 Brought from_the_square(tests::SceneBuilder& builder, std::uint32_t ground, double ground_m,
                         const SampleBudget& budget) {
   builder.plate(ground, 2.0, ground_m, true);
-  scenes::Lamp lamp;  // for a group that has the light
+  scenes::Lamp lamp;  // provides a group for the light
   lamp.name = lamp.group = "lamp";
   lamp.position = Vec3(0.0, 0.0, 0.3);
   lamp.intensity_cd = Rgb(1.0);
@@ -55,10 +55,10 @@ Brought from_the_square(tests::SceneBuilder& builder, std::uint32_t ground, doub
 
 constexpr double square_edge = 0.05, plate_edge = 0.04;
 
-// A square of area A, h above a floor, brings B A / (pi h^2) to the place beneath it, and from x
-// aside (h^2 / (h^2 + x^2))^2 of it, in the mean 1 - 2 <x^2> / h^2 with <x^2> = (a^2 + b^2) / 6 of
-// squares of edges a and b. One of 1257 cosine rays finds it: the 32 of a sample alone would
-// scatter by sqrt(1257 / 32) = 6 times that, four aimed ones with them by a tenth.
+// A square of area A at height h gives the place beneath it B A / (pi h^2), and at horizontal
+// distance x (h^2 / (h^2 + x^2))^2 of it, on average 1 - 2 <x^2> / h^2 with <x^2> = (a^2 + b^2) / 6
+// for squares of edges a and b. One of 1257 cosine-distributed rays finds it: the 32 of a sample
+// alone have a standard deviation of sqrt(1257 / 32) = 6 times that, with four aimed rays a tenth.
 TEST(AimedRays, WhatASmallBrightPatchSendsIsFound) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
@@ -71,9 +71,9 @@ TEST(AimedRays, WhatASmallBrightPatchSendsIsFound) {
   EXPECT_LT(found.deviation, 0.1 * exact);
 }
 
-// Glass that reflects more than it lets through is a mirror: no aimed ray comes by it to a square
-// that lies 0.3 m beside the plate, and cosine rays count fully. By the image, 1 m above, cosines
-// 1 / d and d^2 = 1.09: B A / (pi d^4).
+// Glass that reflects more than it transmits acts as a mirror: no aimed ray reaches by it a square
+// 0.3 m beside the plate, and cosine-distributed rays have full weight. By the image, 1 m above,
+// with cosines 1 / d and d^2 = 1.09: B A / (pi d^4).
 TEST(AimedRays, WhatAMirrorShowsThatIsGlassTooIsLeftToCosineRays) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What two halves of the rays find at a point is all or nothing, in a penumbra as in the light of a
-// small bright thing, and how much its error counts goes by what it should be (error_weight): the
-// one must not tell the other.
+// In a penumbra, as in the light of a small bright source, each half of a point's rays finds all of
+// the light or none. The weight of the point's error depends on its true brightness (error_weight),
+// and must not depend on the chance of these halves.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 enum class By { Lamps, GatherRays };
 
-// Points that each half finds by chance, ten times as bright as the mean. The solution is right.
+// Points that each half lights by chance, ten times as bright as the mean. The solution is right.
 struct HalfLit {
   static constexpr double mean = 1.0, right = 10.0;
   static constexpr std::size_t count = 4096;
@@ -44,8 +44,9 @@ struct HalfLit {
   }
 };
 
-// By their own values points whose halves both are dark count w = 1, those that both are lit
-// 4 / 20: a quarter of r^2 (1 + 1 / 25) less half of it at (4 / 10)^2, 0.18 of 10^2 in place of 0.
+// With weights from their own values, points with two dark halves have w = 1, points with two lit
+// halves 4 / 20: a quarter of r^2 (1 + 1 / 25) minus half of it at (4 / 10)^2, 0.18 of 10^2 instead
+// of 0.
 TEST(Penumbra, ARightSolutionHasNoResidual) {
   for (const By by : {By::Lamps, By::GatherRays}) {
     HalfLit points(by, 1);
@@ -61,9 +62,9 @@ TEST(Penumbra, ARightSolutionHasNoResidual) {
   }
 }
 
-// A ray in a thousand finds a glint of a thousand times the mean: where it is one of a half's, that
-// half counts as twice what is bright, 2 x 4 means, and the other, which is off by one, as further
-// rays say: in full where they find nothing, as 4 / 400 where they find 400 times the mean.
+// One ray of a thousand finds a glint of a thousand times the mean. A half with such a ray is
+// limited to twice the bright level, 2 x 4 means. The weight of the other half, with an error of 1,
+// follows the further rays: 1 if they find nothing, 4 / 400 if they find 400 times the mean.
 TEST(Penumbra, AGlintThatOneRayFindsIsNoMoreThanTwiceWhatIsBright) {
   for (const auto& [found, weight] : {std::pair{0.0, 1.0}, {400.0, 0.01}}) {
     ResidualSums sums;
@@ -79,7 +80,7 @@ TEST(Penumbra, AGlintThatOneRayFindsIsNoMoreThanTwiceWhatIsBright) {
   }
 }
 
-// A point that is dark, or that all agree on, needs no further rays.
+// A dark point, or one whose halves agree, needs no further rays.
 TEST(Penumbra, OfSurePointsNoMoreIsAsked) {
   ResidualSums sums;
   sums.start(2);
@@ -93,7 +94,7 @@ TEST(Penumbra, OfSurePointsNoMoreIsAsked) {
   EXPECT_FALSE(sums.is_unsure(1, 1.0));
 }
 
-// A floor of 4 x 4 m beneath two boards that leave a slit of 0.3 m to a wide Sun.
+// A floor of 4 x 4 m beneath two boards with a slit of 0.3 m, under a wide Sun.
 scenes::Scene slit() {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
@@ -108,9 +109,9 @@ scenes::Scene slit() {
   return builder.scene;
 }
 
-// Its penumbrae are 2 tan 4 deg = 0.14 m wide and 4 m long: squares of 1.5 cm, which follow them to
-// a tenth, are 5000 in all. Where dark points count most, no patches are ever small enough. What is
-// called reached is sure: sqrt(1.3 + 0.3 * 1.5 * 1.645) of what is asked for, at most.
+// Its penumbrae are 2 tan 4 deg = 0.14 m wide and 4 m long: 5000 squares of 1.5 cm follow them to a
+// tenth. If dark points had the largest weight, no patches would be small enough. A reached error
+// is certain: the bound is at most sqrt(1.3 + 0.3 * 1.5 * 1.645) of the wanted error.
 TEST(Penumbra, IsReachedByPatchesAsSmallAsItNeeds) {
   const scenes::Scene scene = slit();
   const tests::Prepared prepared(scene);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is shared between patches, and which of them are cut.
+// Sharing of samples between patches, and the selection of patches to divide.
 #include "raytrace/surfaces/shared_samples.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 namespace earthshine::raytrace {
 namespace {
 
-// A room of 6 x 16 patches in darkness; each wall is a coarse patch.
+// A dark room of 6 x 16 patches; each wall is a coarse patch.
 class Walls {
  public:
   Walls() {
@@ -65,9 +65,9 @@ class Walls {
 };
 
 // Noise of variance 1 shared by all 16 patches of a wall has a mean square of 1/16. A patch whose
-// own is beyond twice its deviation by chance keeps part of it, and so do walls whose patches
-// differ by chance: in all less than twice as much again. A wall's mean square has a relative
-// standard error of sqrt(2), that of 192 walls of sqrt(2 / 192).
+// own difference exceeds twice its standard deviation by chance keeps part of it, and so do walls
+// whose patches differ by chance: in all less than twice as much more. A wall's mean square has a
+// relative standard error of sqrt(2), 192 walls together sqrt(2 / 192).
 TEST(SharedSamples, NoiseIsThatOfTheRaysOfAllPatches) {
   Walls walls;
   std::mt19937 random(1);
@@ -82,7 +82,7 @@ TEST(SharedSamples, NoiseIsThatOfTheRaysOfAllPatches) {
   EXPECT_GT(walls.sharing().rays(0), 32.0);  // its own: 8 of each half at 2 points
 }
 
-// Halves that agree have no noise: each patch keeps what it found.
+// Halves that agree have no noise: each patch keeps its own value.
 TEST(SharedSamples, WhatBothHalvesFindIsKept) {
   Walls walls;
   for (const std::uint32_t i : walls.which) walls.find(i, i, i);
@@ -91,10 +91,10 @@ TEST(SharedSamples, WhatBothHalvesFindIsKept) {
   EXPECT_NEAR(walls.sharing().rays(5), 32.0, 1e-9);
 }
 
-// One patch finds 5 lx, all with noise of variance 1. Off the wall's mean that is d = 15/16 of 5,
-// d^2 less four squares of its noise s = 18, and it keeps s / (s + 1) of d, 4.75 in all; by what
-// the wall's patches differ by together, s = d^2 / 16, it would keep 3. The mean of 64 rooms has a
-// standard error of 1/8, and one in ten of them keeps less by chance.
+// One patch has 5 lx, all have noise of variance 1. Its difference from the wall's mean is
+// d = 15/16 of 5; d^2 minus four times its noise gives s = 18, and it keeps s / (s + 1) of d, 4.75
+// in all. With the common s = d^2 / 16 of the wall's patches it would keep 3. The mean of 64 rooms
+// has a standard error of 1/8, and one room in ten keeps less by chance.
 TEST(SharedSamples, ABrightPatchAmongDarkOnesStaysBright) {
   Walls walls;
   std::mt19937 random(2);
@@ -108,8 +108,8 @@ TEST(SharedSamples, ABrightPatchAmongDarkOnesStaysBright) {
   EXPECT_LT(bright, 5.0 + 4.0 / 8.0);
 }
 
-// The light of a patch, known by 1000 rays, is 0; 32 rays of noise 1 find it to be 10 lx. It is as
-// noise of 100 would be, that of 32 * 1 / 100 rays. Within their noise all rays count.
+// The light of a patch, from 1000 rays, is 0; 32 rays of noise 1 give 10 lx. The light's error
+// equals noise of 100, or 32 * 1 / 100 rays. Within the noise all rays count.
 TEST(SharedSamples, RaysOfALightThatHasChangedCountNoMore) {
   Walls walls;
   std::mt19937 random(3);
@@ -123,7 +123,7 @@ TEST(SharedSamples, RaysOfALightThatHasChangedCountNoMore) {
   EXPECT_EQ(sharing.still_counting(20, 0.1), 0.1);  // no more than there are
 }
 
-// A patch that holds more than half of the error is cut alone; all are where all of it counts.
+// A patch with more than half of the error is divided alone; all are divided if all of it must go.
 TEST(SurfaceCuts, ThePatchesThatHoldTheShareAskedForAreCutAndNoOther) {
   Walls walls;
   const radiosity::Patches& patches = walls.light.solution.patches;
@@ -143,8 +143,8 @@ TEST(SurfaceCuts, ThePatchesThatHoldTheShareAskedForAreCutAndNoOther) {
   EXPECT_EQ(number(1.0), 96);
 }
 
-// What one cut makes needed beside it counts, too: no more patches than allowed, and one less only
-// where the last one does not fit.
+// Neighbours that a division requires count, too: no more patches than allowed, and one less only
+// if the last one does not fit.
 TEST(SurfaceCuts, NoMorePatchesThanAllowed) {
   Walls walls;
   const radiosity::Patches& patches = walls.light.solution.patches;
@@ -160,7 +160,7 @@ TEST(SurfaceCuts, NoMorePatchesThanAllowed) {
   }
 }
 
-// Of a patch that looks out of a body by a sliver, one point may be all that is sampled.
+// A patch with only a sliver outside a body may have a single sampled point.
 TEST(SurfaceCuts, APatchOfWhichOnePointIsOpenIsCutByIt) {
   Walls walls;
   const radiosity::Patches& patches = walls.light.solution.patches;
@@ -174,8 +174,8 @@ TEST(SurfaceCuts, APatchOfWhichOnePointIsOpenIsCutByIt) {
   EXPECT_DOUBLE_EQ(choice.total(), double(0.05F) * 100.0 / double(patches.count()));
 }
 
-// A half holds half of its area's part of what its patch held. Two points that find nothing there
-// may have missed it: a third of that is still expected, and of its rays half count.
+// A half has half of its parent's error by area. Two points that find nothing may have missed it: a
+// third remains expected, and half of the parent's rays count.
 TEST(SurfaceCuts, WhatIsExpectedOfAPieceCountsAsAPoint) {
   Walls walls;
   const radiosity::Patches& patches = walls.light.solution.patches;

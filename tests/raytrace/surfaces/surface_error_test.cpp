@@ -15,7 +15,7 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Interpolated radiosity at a point of the surfaces; green, the scenes are grey.
+// Interpolated radiosity at a point of the surfaces; green, because the scenes are grey.
 class Reader {
  public:
   explicit Reader(const radiosity::Solution& solution)
@@ -31,8 +31,8 @@ class Reader {
   RadianceTable table_;
 };
 
-// Root mean square over all fronts of how far the solution is from the truth at a point, weighed
-// and over the mean as SurfaceError has it.
+// RMS error of the solution at points of all fronts, weighted and relative to the mean as in
+// SurfaceError.
 template <class Truth>
 double true_error(const scenes::Scene& scene, const radiosity::Solution& solution,
                   const Truth& truth) {
@@ -106,10 +106,10 @@ struct LitPlate {
 };
 
 TEST(SurfaceError, OfASmoothGradientIsThePatchesOwn) {
-  // Interpolated radiosity is of the second order within the plate and of less in the half cells
-  // along its rim, which hold half of the error: the estimate, which takes the second, has two
-  // thirds to three quarters of it. The bound is 4.4 times the estimate (surface_error.h), so
-  // 2.9 to 3.4 times the truth.
+  // Interpolated radiosity is of second order within the plate and of lower order in the half cells
+  // along its rim, which have half of the error. The estimate assumes second order and gives two
+  // thirds to three quarters of the error. The bound is 4.4 times the estimate (surface_error.h),
+  // hence 2.9 to 3.4 times the truth.
   const LitPlate plate;
   const tests::Prepared prepared(plate.scene);
   for (const double edge_m : {0.25, 0.125}) {
@@ -124,14 +124,14 @@ TEST(SurfaceError, OfASmoothGradientIsThePatchesOwn) {
     EXPECT_LT(error.parts.patches.estimate, 1.2 * truth) << edge_m;
     EXPECT_GE(error.parts.patches.bound_95, truth) << edge_m;
     EXPECT_LT(error.parts.patches.bound_95, 3.4 * truth) << edge_m;
-    // Nothing is reflected to anything; what is left is chance of the lamp's light.
+    // Without interreflection only the sampling of the lamp is random.
     EXPECT_LT(error.parts.form_factors.estimate, 0.03 * truth);
   }
 }
 
 TEST(SurfaceError, CountsBothSidesOfASheet) {
-  // A sheet that is lit from behind alone has half the mean square and half the mean: the square
-  // root of two times the plate's error. Where points fall differs.
+  // A sheet lit from behind only has half the mean square and half the mean: sqrt(2) times the
+  // plate's error. The sample points differ.
   const LitPlate plate, sheet(true);
   const tests::Prepared one(plate.scene), two(sheet.scene);
   const double error = error_of(one, one.solve(even(0.125)), even(0.125)).parts.patches.estimate;
@@ -142,7 +142,7 @@ TEST(SurfaceError, CountsBothSidesOfASheet) {
 
 TEST(SurfaceError, IsMadeOutByAFinerCutWhereThereIsNoCoarser) {
   LitPlate plate;
-  plate.scene.lamps.at(0).position.z = 5.0;  // too far to have the plate cut
+  plate.scene.lamps.at(0).position.z = 5.0;  // too far away for the plate to be divided
   const tests::Prepared prepared(plate.scene);
   const radiosity::Solution solution = prepared.solve(even(1.0));
   ASSERT_EQ(solution.patches.count(), 1U);
@@ -152,7 +152,7 @@ TEST(SurfaceError, IsMadeOutByAFinerCutWhereThereIsNoCoarser) {
 }
 
 TEST(SurfaceError, OfAHardShadowOnRefinedPatchesLiesWithinItsBound) {
-  // The Sun over half of the plate, with the shadow's edge askew.
+  // The Sun on half of the plate, with an oblique shadow edge.
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
   builder.quad(builder.material(tests::grey(0.0)), {-0.6, -0.6, 0.5}, {0.361, -0.6, 0.5},
@@ -176,7 +176,7 @@ TEST(SurfaceError, OfAHardShadowOnRefinedPatchesLiesWithinItsBound) {
 }
 
 TEST(SurfaceError, OfARoomLiesWithinItsBound) {
-  // Against a solution with 16 times the patches and 8 times the rays per patch.
+  // Relative to a solution with 16 times the patches and 8 times the rays per patch.
   const tests::SmallRoom& room = tests::small_room();
   const SurfaceError error = surface_error(room.study(), room.solution, room.solver);
   radiosity::SolveOptions better = room.solver;
@@ -214,9 +214,10 @@ TEST(SurfaceError, SameOnOneAndTwoThreads) {
   EXPECT_EQ(errors[0].parts.total().bound_95, errors[1].parts.total().bound_95);
 }
 
-// Two specks 180 m apart make a spot 0.7 m wide, wider than the patches that a shadow's edge
-// crosses: each patch knows its mean by 16 points, off by about 0.25 / 16^0.75 = 0.03 of the light
-// where the edge crosses it, while half of the patch is off by half of the light at its points.
+// Two specks 180 m apart make a spot 0.7 m wide, wider than the patches at the shadow's edge. A
+// patch's mean comes from 16 points, with an error of about 0.25 / 16^0.75 = 0.03 of the light
+// where the edge crosses it, while the error at the points of half of the patch is half of the
+// light.
 TEST(SurfaceError, OfSpotsIsThatOfTheirMeans) {
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);

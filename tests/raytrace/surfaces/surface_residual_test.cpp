@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laws of the residual r = S + T L~ - L~ and of what follows from it.
+// Laws of the residual r = S + T L~ - L~ and of its results.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,7 +16,7 @@
 namespace earthshine::raytrace {
 namespace {
 
-// A closed room of 1 m; its walls shine or a lamp hangs in it.
+// A closed room of 1 m with shining walls or a lamp.
 scenes::Scene closed_room(double reflectance, double emission, bool lamp) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(reflectance, emission));
@@ -72,10 +72,10 @@ double luminous(const std::vector<double>& values, std::size_t patch, std::size_
   return base::luminance(sum);
 }
 
-// A disk of radius r shines M onto a point d below its plane and x off its axis, which looks at it:
-// E = M / 2 (1 - (x^2 + d^2 - r^2) / sqrt((x^2 + d^2 + r^2)^2 - 4 r^2 x^2)) (Hamilton and Morgan
-// 1952). So near a disk samples come by its solid angle, and some show nothing: however many a half
-// has, all count.
+// A disk of radius r with exitance M and a facing point at distance d below its plane and x off its
+// axis: E = M / 2 (1 - (x^2 + d^2 - r^2) / sqrt((x^2 + d^2 + r^2)^2 - 4 r^2 x^2)) (Hamilton and
+// Morgan 1952). So near a disk, samples are drawn by solid angle, and some carry no light; all
+// samples of a half must count.
 TEST(SurfaceResidual, OfANearLampAllSamplesCount) {
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 0.002, 0.0, true);
@@ -125,7 +125,7 @@ TEST(SurfaceResidual, OfAFurnaceIsZeroToRounding) {
   EXPECT_LT(error.parts.total().bound_95, 1e-5);
 }
 
-// L - L~ of twice the solution is minus the solution, of none the solution: e has that mean.
+// L - L~ of twice the solution is minus the solution, of zero the solution: e has that mean.
 TEST(SurfaceResidual, BringsBackASolutionThatIsTwiceAsBrightOrDark) {
   const Solved room(closed_room(0.6, 0.0, true), 0.25, 1024);
   const std::size_t columns = room.solution.columns;
@@ -154,12 +154,12 @@ TEST(SurfaceResidual, BringsBackASolutionThatIsTwiceAsBrightOrDark) {
     }
     const double mean = sum / tries;
     const double spread = std::sqrt(std::max(0.0, squares / tries - mean * mean) / (tries - 1));
-    // The solution itself has the noise of its own rays; its mean is known to some per mille.
+    // The solution has noise of its own rays; its mean is accurate to some per mille.
     EXPECT_NEAR(mean, (1.0 - double(factor)) * right, 4.0 * spread + 0.005 * right) << factor;
   }
 }
 
-// The product of halves has no noise in its mean: few rays find the same mean square as many.
+// The product of halves has no noise in its mean: few rays and many give the same mean square.
 TEST(SurfaceResidual, HalvesAreIndependent) {
   const Solved room(closed_room(0.8, 0.0, true), 0.25, 256);
   const LightOnSurfaces light = room.light();
@@ -189,7 +189,7 @@ TEST(SurfaceResidual, HalvesAreIndependent) {
   }
   const double apart = std::hypot(error[0], error[1]);
   EXPECT_NEAR(mean[0], mean[1], 4.0 * apart);
-  EXPECT_GT(noise, 8.0 * apart);  // would be seen
+  EXPECT_GT(noise, 8.0 * apart);  // would be detected
 }
 
 TEST(SurfaceResidual, OfAnAllButBlackBoxIsThatOfDirectLight) {
@@ -205,15 +205,15 @@ TEST(SurfaceResidual, OfAnAllButBlackBoxIsThatOfDirectLight) {
   EXPECT_NEAR(all / lamps, 1.0, 0.1);
 }
 
-// A cap of height h of a sphere of radius R that looks out of a box has the area 2 pi R h
-// (Archimedes), however few points of its patches are sampled.
+// A cap of height h of a sphere of radius R outside a box has the area 2 pi R h (Archimedes),
+// however few points of its patches are sampled.
 TEST(SurfaceResidual, OfASliverThatLooksOutOfABodyTheAreaIsTold) {
   constexpr double h = 0.05;
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
   tests::fine_sphere(builder, m, {0.0, 0.0, 0.0}, 1.0, 48);
   builder.room({m, m, m, m, m, m});
-  // The room turned outward: a body from -2 to 2, and up to 1 - h.
+  // The inverted room: a body from -2 to 2, and up to 1 - h.
   for (std::size_t k = builder.scene.triangles.size() - 12; k < builder.scene.triangles.size(); ++k)
     std::swap(builder.scene.triangles[k].vertex[1], builder.scene.triangles[k].vertex[2]);
   for (std::size_t k = builder.scene.vertices.size() - 24; k < builder.scene.vertices.size(); ++k) {
@@ -234,7 +234,7 @@ TEST(SurfaceResidual, OfASliverThatLooksOutOfABodyTheAreaIsTold) {
     if (!patches.facets[patches.facet[i]].is_cluster()) continue;
     const double open = double(samples.residual[i].open), area = patches.area_m2[i];
     found += area * open;
-    // Of at least 32 points, 16 tried for each of two.
+    // At least 32 candidates, 16 for each of two points.
     variance += area * area * open * (1.0 - open) / 32.0;
   }
   ASSERT_GT(variance, 0.0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sources smaller than a pixel, in black rooms, so that all light of a picture is theirs: its sum
-// over the pixels is the source's luminance times its image's area in px^2. n samples that meet it
-// independently by a chance of 64 / n leave at most 1 / 8 of it, better spread ones less.
+// Sources smaller than a pixel, in black rooms: the sum of the picture over its pixels is the
+// source's luminance times its image's area in px^2. With n independent samples that each hit it
+// with probability 64 / n, the relative error is at most 1 / 8; stratified samples have less.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,7 +33,7 @@ tests::SceneBuilder black_room() {
   return builder;
 }
 
-// 0.7 m in front of the camera, turned to it, not in the middle of a pixel.
+// 0.7 m in front of the camera, facing it, off the centre of a pixel.
 const Vec3 source_place(0.9, 0.507, 0.483);
 
 void add_lamp(scenes::Scene& scene, scenes::LampKind kind) {
@@ -49,7 +49,7 @@ void add_lamp(scenes::Scene& scene, scenes::LampKind kind) {
   scene.lamps.push_back(lamp);
 }
 
-// cells x cells quads that emit, each of that edge.
+// cells x cells emitting quads of that edge.
 void add_emitters(tests::SceneBuilder& builder, int cells, double edge) {
   const std::uint32_t m = builder.material(tests::grey(0.0, source_exitance));
   for (int k = 0; k < cells * cells; ++k) {
@@ -94,11 +94,11 @@ void expect_sum(const scenes::Scene& scene, const scenes::Camera& camera, double
   for (const double sum : sums) squares += (sum - mean) * (sum - mean);
   const double deviation = std::sqrt(squares / (source_seeds - 1));
   EXPECT_NEAR(mean, expected, 4.0 * deviation / std::sqrt(double(source_seeds)));
-  // A deviation that is told by 16 is itself off by 1 / sqrt(2 * 15).
+  // A standard deviation from 16 values has the relative error 1 / sqrt(2 * 15).
   EXPECT_LT(deviation, expected / std::sqrt(hits) * (1.0 + 4.0 / std::sqrt(30.0)));
 }
 
-// Of a square of side_m at distance_m, through an even picture plane.
+// Of a square of side_m at distance_m, in a flat picture plane.
 double image_px2() {
   const double px = pixels_across / 2.0 / std::tan(base::radians(30.0));
   return std::pow(side_m * px / distance_m, 2);
@@ -126,9 +126,9 @@ TEST(SmallSources, LampsAndEmittersSendWhatTheirImagesHold) {
   }
 }
 
-// A spot of a fifth of a degree and less lights a few mm of a wall 0.8 m in front of the camera,
-// whose image is at most a hundredth of a pixel: a flux Phi leaves it as the intensity rho Phi / pi
-// toward the camera, and the picture has as many px^2 a square metre everywhere.
+// A spot of a fifth of a degree or less lights a few mm of a wall 0.8 m in front of the camera,
+// with an image of at most a hundredth of a pixel. A flux Phi is reflected with the intensity rho
+// Phi / pi toward the camera, and px^2 per square metre are constant in the picture.
 TEST(SmallSources, NarrowBeamsSendWhatTheirSpotsHold) {
   const double px_per_m = pixels_across / 2.0 / std::tan(base::radians(30.0)) / 0.8;
   for (const double field_deg : {0.05, 0.2}) {
@@ -156,7 +156,7 @@ TEST(SmallSources, ALensSpreadsTheSame) {
   scenes::Camera camera = into_room();
   camera.focus_m = 0.4;
   camera.aperture_m = 0.15;
-  // The blur's radius, px (depth_of_field_test.cpp); each of its pixels meets the lamp 64 times.
+  // The blur's radius, px (depth_of_field_test.cpp); each of its pixels hits the lamp 64 times.
   const double blur = 0.5 * camera.aperture_m * std::sqrt(image_px2()) / side_m *
                       std::abs(distance_m - camera.focus_m) / camera.focus_m;
   EXPECT_GT(blur, 2.0);
@@ -170,7 +170,7 @@ TEST(SmallSources, ASunIsOne) {
   scenes::Sun sun;
   sun.direction = glm::normalize(Vec3(1.0, 0.01, -0.02));
   builder.scene.sun = sun;
-  // E = L times the solid angle, which a plane at unit distance shows as it is near the axis.
+  // E = L times the solid angle, which near the axis is the area in a plane at unit distance.
   const double px = pixels_across / 2.0 / std::tan(base::radians(30.0));
   expect_sum(builder.scene, into_room(), sun.illuminance_lx.g * px * px, every_way().back());
 }
@@ -194,11 +194,12 @@ TEST(SmallSources, HiddenOnesAndPartsOfLargeOnesTakeNoMoreSamples) {
   EXPECT_LE(samples(mesh), 64);
 }
 
-// The cases that follow are those of "rare light": pictures of 24 x 24 pixels and less that missed
-// all of such light in every seed, beside stated errors of 5 %.
+// The following cases are those of "rare light": pictures of up to 24 x 24 pixels that missed all
+// of such light in every seed, with stated errors of 5 %.
 
-// The Sun in a flat mirror: its image has the Sun's solid angle, E times the mirror's share is what
-// a plane of unit distance shows of it near the axis, where the camera looks. Four pixels share it.
+// The Sun in a flat mirror: its image has the Sun's solid angle; near the axis, where the camera
+// looks, E times the mirror's reflectance is its luminance times its area in a plane at unit
+// distance. Four pixels share it.
 TEST(SmallSources, TheSunsImageInAFlatMirrorIsOne) {
   tests::SceneBuilder builder;
   scenes::Material mirror = tests::grey(0.0);
@@ -236,7 +237,7 @@ TEST(SmallSources, AHighlightSmallerThanAPixelIsOne) {
   expect_sum(builder.scene, camera, expected, every_way().back(), 16.0);
 }
 
-// Of an emitter half a millimetre is in view beside a sheet, a tenth of a pixel and less in all.
+// Half a millimetre of an emitter is visible beside a sheet, a tenth of a pixel or less in all.
 TEST(SmallSources, ASliverBesideASheetIsOne) {
   for (const double width : {0.0005, 0.002}) {
     tests::SceneBuilder builder;
@@ -250,8 +251,8 @@ TEST(SmallSources, ASliverBesideASheetIsOne) {
     camera.look_at = Vec3(0.2, 0.5, 0.85);
     camera.fov_deg = 25.0;
     const double px_per_m = pixels_across / 2.0 / std::tan(base::radians(12.5)) / 2.5;
-    // The camera is in the plane of the emitter's edge: the sheet, 1 mm nearer, hides by its edge
-    // 0.4 per mille more than its width there.
+    // The camera is in the plane of the emitter's edge: the sheet is 1 mm nearer, and its edge
+    // hides 0.4 per mille more than its width there.
     const double seen = 0.2 - (0.2 - width * 2.5 / 2.499);
     const double expected = source_exitance / base::pi * seen * 0.3 * px_per_m * px_per_m;
     expect_sum(builder.scene, camera, expected, every_way().back());

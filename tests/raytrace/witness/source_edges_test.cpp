@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edges of sources that the camera sees itself: a pixel's mean is the mean of the source's radiance
-// over the pixel, by 64 x 64 rays.
+// Edges of sources that the camera sees: a pixel's mean is the mean of the source's radiance over
+// the pixel, by 64 x 64 rays.
 #include "raytrace/witness/source_edges.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ struct Errors {
   int pixels = 0;
 };
 
-// Of the share of a pixel that the source fills, over the pixels that it fills in part.
+// Error of the share of a pixel that the source fills, over partly filled pixels.
 Errors errors_of(const scenes::Scene& scene, const scenes::Camera& camera, const Shows& shows,
                  const RenderOptions& how) {
   const tests::Prepared prepared(scene);
@@ -61,7 +61,7 @@ Errors errors_of(const scenes::Scene& scene, const scenes::Camera& camera, const
 
 struct Way {
   const char* name;
-  double error;  // wanted, also of the edges
+  double error;  // wanted, also for the edges
 };
 constexpr Way ways[] = {{"of 5 %", 0.05}, {"of 1 %", 0.01}, {"of 0.35 %", 0.0035}};
 
@@ -71,7 +71,8 @@ void expect_shares(const scenes::Scene& scene, const scenes::Camera& camera, con
     options.error = way.error;
     const Errors errors = errors_of(scene, camera, shows, options);
     ASSERT_GT(errors.pixels, 20);
-    // 0.27 / 64^(3/4) = 0.012; some tens of pixels tell an RMS to a fifth, twice.
+    // 0.27 / 64^(3/4) = 0.012; the RMS over some tens of pixels has a relative error of a fifth,
+    // times two.
     const double allowed = std::max(0.0035, std::min(way.error, 0.012));
     EXPECT_LT(errors.rms, 1.4 * allowed) << way.name;
     EXPECT_LT(errors.worst, 5.0 * allowed) << way.name;
@@ -86,13 +87,13 @@ scenes::Camera along_x(double roll_deg) {
   return camera;
 }
 
-// A lit grey box beside the view: the picture's error is of something.
+// A lit grey box beside the view, so that the picture has reflected light.
 tests::SceneBuilder with_earth() {
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 0.2, -0.5, true);
   scenes::Earth earth;
   earth.direction = Vec3(0.0, 0.0, -1.0);
-  earth.half_angle_deg = 84.0;  // the limb lies 6 degrees under the middle of the picture
+  earth.half_angle_deg = 84.0;  // the limb is 6 degrees below the middle of the picture
   earth.model = scenes::EarthModel::Uniform;
   earth.radiance = Rgb(shown_cd_m2);
   builder.scene.earth = earth;
@@ -122,7 +123,7 @@ TEST(SourceEdges, TheSunsDiscDoes) {
   });
 }
 
-// What stands before the Earth has edges too.
+// Bodies in front of the Earth have edges, too.
 TEST(SourceEdges, ABlackPlateBeforeTheEarthDoes) {
   tests::SceneBuilder builder = with_earth();
   const std::uint32_t black = builder.material(tests::grey(0.0));
@@ -171,7 +172,7 @@ TEST(SourceEdges, SamplesFollowTheWantedError) {
   EXPECT_EQ(samples_for_edges(1e-6), 1024U);
 }
 
-// Even light of a source, and edges of surfaces far from any, take none.
+// The even light of a source, and edges of surfaces far from any, need no more samples.
 TEST(SourceEdges, OnlyEdgesOfSourcesTakeMore) {
   PixelSums sums({0, 0, 12, 6}, 1, false);
   std::fill(sums.samples.begin(), sums.samples.end(), 4U);

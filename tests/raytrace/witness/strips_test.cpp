@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strips of light thinner than a pixel, and what the witness says where samples find none.
+// Strips of light thinner than a pixel, and the witness' statement where samples find none.
 #include "raytrace/witness/strips.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ struct Slot {
     camera.look_at = Vec3(3.0, 3.0, 0.1);
     camera.fov_deg = 50.0;
   }
-  // Direct light of a place of the film, cd/m^2.
+  // Direct light at a film position, cd/m^2.
   [[nodiscard]] double light(const CameraModel& model, double x, double y) const {
     const Ray ray = model.ray(x, y, 0.5, 0.5);
     if (ray.direction.z >= 0.0) return 0.0;
@@ -49,8 +49,8 @@ struct Slot {
 };
 
 // "A line of sunlight on the floor, 2 cm wide: a pixel whose samples all missed it counts as
-// finished." Truth: 128 x 128 places of each pixel, by where the slot lies toward the Sun. The mean
-// square over the seeds is told to 1/4 by 8 of them with a few tens of pixels each.
+// finished." Truth: 128 x 128 positions of each pixel, from the slot's position toward the Sun. 8
+// seeds with a few tens of pixels each give the mean square to 1/4.
 TEST(LightStrips, ALineOfSunlightIsKnownToTheWantedError) {
   for (const double width : {0.02, 0.005}) {
     const Slot slot(width);
@@ -92,8 +92,8 @@ TEST(LightStrips, ALineOfSunlightIsKnownToTheWantedError) {
   }
 }
 
-// A cube has 12 edges; its diagonals lie in planes. From beyond a corner 6 of them are outlines,
-// from before a face 4.
+// A cube has 12 edges; its diagonals are within faces. Seen from beyond a corner 6 edges are
+// outlines, from in front of a face 4.
 TEST(SceneEdges, OutlinesOfACube) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
@@ -128,8 +128,8 @@ TEST(SpotMap, DividesASpotAmongPixels) {
   }
 }
 
-// A lamp of 1 cm before black walls, whose pixel holds 64 samples or more that find nothing, or its
-// light.
+// A lamp of 1 cm in front of black walls; its pixel has 64 samples or more that find nothing, or
+// its light.
 TEST(Witness, LightThatNoSampleFindsIsStated) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.0));

@@ -88,7 +88,7 @@ MeasuredStep measured(const char* method, const char* series, double setting, do
   return point;
 }
 
-// Paths at 10 s have 4 %; error falls with the root of the time: 1 % takes 160 s.
+// Paths at 10 s have 4 %; the error falls with the root of the time: 1 % takes 160 s.
 TEST(Findings, AnswersAreTheCheapestReachedOrSayWhatPathsWouldTake) {
   const std::vector<MeasuredStep> points = {
       measured("radiosity", series::error, 0.1, 1.0, 0.08, 0.08),
@@ -106,7 +106,7 @@ TEST(Findings, AnswersAreTheCheapestReachedOrSayWhatPathsWouldTake) {
   EXPECT_EQ(found.front, (std::vector<std::size_t>{0, 1}));
 }
 
-// A method that leaves out 9 % has no picture within 5 %, but settings that are.
+// A method whose limit is 9 % has no picture within 5 %, but settings within 5 %.
 TEST(Findings, TheLimitIsKeptApartFromTheSetting) {
   const std::vector<MeasuredStep> points = {
       measured("radiosity", series::error, 0.1, 1.0, 0.12, 0.08),
@@ -118,7 +118,7 @@ TEST(Findings, TheLimitIsKeptApartFromTheSetting) {
   EXPECT_EQ(found.answers[0].methods[0].setting, 1U);
 }
 
-// Errors below what the reference resolves are no better than that.
+// Errors below the reference's resolution count as the resolution.
 TEST(Findings, TheReferenceLimitsWhatIsSaid) {
   const std::vector<MeasuredStep> points = {
       measured("radiosity", series::error, 0.1, 1.0, 0.001, 0.001),
@@ -126,7 +126,7 @@ TEST(Findings, TheReferenceLimitsWhatIsSaid) {
   const Findings found = find_accuracy(points, {0.05, 0.01}, 0.03);
   EXPECT_TRUE(found.answers[0].told);
   EXPECT_FALSE(found.answers[1].told);
-  EXPECT_EQ(found.front, (std::vector<std::size_t>{0}));  // the second cannot be told to be better
+  EXPECT_EQ(found.front, (std::vector<std::size_t>{0}));  // the second is not measurably better
   EXPECT_FALSE(found.laws.front().law);
   EXPECT_EQ(found.worth.front().down_to, 0.03);
 }

@@ -31,8 +31,8 @@ NoisyPicture noisy(std::size_t pixels, double truth, double sigma, std::uint64_t
 constexpr std::size_t pixels = 4096;
 const std::vector<bool> all_pixels(pixels, true);
 
-// L is 10 + d, the references are 10 with noise 2: mean (L - R1)(L - R2) = d^2 whatever the noise,
-// with variance (2 d^2 s^2 + s^4) / pixels; d = 0.5, s = 2: (2 + 16) / 4096, so 0.066 on 0.25.
+// L is 10 + d, the references are 10 with noise s = 2: mean (L - R1)(L - R2) = d^2 for any noise,
+// with the variance (2 d^2 s^2 + s^4) / pixels; d = 0.5, s = 2: (2 + 16) / 4096, so 0.066 on 0.25.
 TEST(PictureError, NoiseOfTheReferencesIsTakenOff) {
   const ReferencePair truth{noisy(pixels, 10.0, 2.0, 1), noisy(pixels, 10.0, 2.0, 2)};
   const std::vector<float> picture(pixels, 10.5F);
@@ -43,14 +43,14 @@ TEST(PictureError, NoiseOfTheReferencesIsTakenOff) {
   EXPECT_NEAR(std::pow(10.0 * error.high, 2) - std::pow(10.0 * error.error, 2),
               2.0 * standard_error, 0.5 * standard_error);
   EXPECT_NEAR(error.bias, 0.05, 4.0 * 2.0 / std::sqrt(2.0 * pixels) / 10.0);
-  // One noisy reference alone would have said sqrt(0.25 + 4) / 10.
+  // One noisy reference alone would give sqrt(0.25 + 4) / 10.
   EXPECT_LT(error.high, 0.1);
 }
 
-// The same without the variances: what one s adds to the error is, over many pairs, how far it
-// spreads, d sqrt(x) = dx / (2 sqrt(x)). L is off by 0.2 in every pixel and so, by chance, is each
-// reference; the square, 0.04, has the standard error sqrt((2 + 1) 0.2^4 / 400) and is never
-// clamped at 0.
+// The same without the variances. The standard error equals the spread over many pairs,
+// d sqrt(x) = dx / (2 sqrt(x)). L has an error of 0.2 in every pixel, and each reference has random
+// errors of this size. The square, 0.04, has the standard error sqrt((2 + 1) 0.2^4 / 400) and is
+// never clamped at 0.
 TEST(PictureError, WithoutVariancesThePairTellsItsNoise) {
   constexpr std::size_t few = 400, pairs = 400;
   const auto unknown = [](std::uint64_t seed) {
@@ -72,12 +72,13 @@ TEST(PictureError, WithoutVariancesThePairTellsItsNoise) {
   const double mean = sum / pairs;
   const double spread = std::sqrt(squares / pairs - mean * mean);
   EXPECT_NEAR(mean, 0.04, 4.0 * spread / std::sqrt(double(pairs)));
-  // The spread of 400 pictures is known to 1 / sqrt(800).
+  // The spread of 400 pictures has the relative error 1 / sqrt(800).
   EXPECT_NEAR(claimed / spread, 1.0, 4.0 / std::sqrt(2.0 * pairs) + 0.05);
 }
 
 // An exact picture, without the variances: mean n1 n2 has the standard error 0.2^2 / sqrt(pixels),
-// whose root is what could be hidden. Half the difference of the pair has the noise of their mean.
+// whose root is the least detectable error. Half the difference of the pair has the noise of their
+// mean.
 TEST(PictureError, NoErrorIsNotMadeOneByThePairsNoise) {
   constexpr std::size_t many = 10000;
   ReferencePair truth{noisy(many, 1.0, 0.2, 101), noisy(many, 1.0, 0.2, 102)};
@@ -92,9 +93,9 @@ TEST(PictureError, NoErrorIsNotMadeOneByThePairsNoise) {
               4.0 * 0.2 / std::sqrt(2.0) / std::sqrt(2.0 * many) + 0.002);
 }
 
-// Known by hand: without noise differences 1, 1 and -2 on a mean of 7 / 3, what is not counted left
-// out. Of nine pixels of 1 and one of 91, mean 10, off by a tenth each: the bright one, 9.1 times
-// the mean, counts by 4 / 9.1 of its difference, (9 * 0.1^2 + 4^2) / 10 on a mean of 10.
+// Without noise: differences 1, 1 and -2 on a mean of 7 / 3, without the pixel that does not count.
+// Then nine pixels of 1 and one of 91, mean 10, each with an error of a tenth: the bright one, 9.1
+// times the mean, has the weight 4 / 9.1, (9 * 0.1^2 + 4^2) / 10 on a mean of 10.
 TEST(PictureError, CountsBrightPixelsInProportion) {
   const auto exact = [](const std::vector<double>& values) {
     const NoisyPicture picture{values, {}};
@@ -113,7 +114,7 @@ TEST(PictureError, CountsBrightPixelsInProportion) {
   EXPECT_NEAR(bright.error, std::sqrt((9 * 0.01 + 16.0) / 10.0) / 10.0, 1e-6);
 }
 
-// An exact picture: 2 s = 2 sigma^2 / sqrt(pixels), of which resolution is the root over the mean.
+// An exact picture: 2 s = 2 sigma^2 / sqrt(pixels); the resolution is its root over the mean.
 TEST(PictureError, ResolutionIsWhatNoiseCouldFeign) {
   const ReferencePair truth{noisy(pixels, 10.0, 2.0, 3), noisy(pixels, 10.0, 2.0, 4)};
   const double expected = std::sqrt(2.0 * 4.0 / std::sqrt(double(pixels))) / 10.0;
@@ -124,10 +125,10 @@ TEST(PictureError, ResolutionIsWhatNoiseCouldFeign) {
     const PictureError error = picture_error(std::vector<float>(pixels, 10.0F), other, all_pixels);
     within += error.error <= resolution(other, all_pixels) ? 1 : 0;
   }
-  EXPECT_GE(within, 44);  // of 50; two standard errors on one side: 97.7 %, less 4 binomial ones
+  EXPECT_GE(within, 44);  // of 50; two standard errors on one side: 97.7 %, minus 4 binomial ones
 }
 
-// The limits' pictures and the truth differ by 1; both are noisy: mean (D1 - R1)(D2 - R2) = 1.
+// The limit's pictures and the truth differ by 1; both are noisy: mean (D1 - R1)(D2 - R2) = 1.
 TEST(PictureError, LimitIsTheDifferenceOfTwoTruths) {
   const ReferencePair truth{noisy(pixels, 10.0, 2.0, 5), noisy(pixels, 10.0, 2.0, 6)};
   const ReferencePair limit{noisy(pixels, 11.0, 1.0, 7), noisy(pixels, 11.0, 1.0, 8)};
@@ -148,7 +149,8 @@ TEST(PictureError, BlackOrNoPixelsHaveNoError) {
   EXPECT_EQ(resolution({black, black}, std::vector<bool>(4)), 0.0);
 }
 
-// First round: 16 paths leave 4 times what is wanted, so 16 times the paths are needed in all.
+// First round: 16 paths have 4 times the wanted error, so that 16 times the paths are needed in
+// all.
 TEST(Reference, BatchesBringTheNoiseDownByTheRootOfThePaths) {
   const std::vector<int> batches = further_batches(16, 0.04, 0.01, 1 << 14);
   int paths = 16;
@@ -159,7 +161,7 @@ TEST(Reference, BatchesBringTheNoiseDownByTheRootOfThePaths) {
   EXPECT_TRUE(further_batches(16, 0.01, 0.0, 1 << 14).empty());
   int most = 16;
   for (const int batch : further_batches(16, 1.0, 1e-6, 500)) most += batch;
-  EXPECT_LE(most, 501);  // a batch has two paths at least
+  EXPECT_LE(most, 501);  // a batch has at least two paths
 }
 
 TEST(Reference, MeanOfBatchesWeighsByPaths) {
@@ -193,7 +195,7 @@ scenes::Scene plate_under_earth() {
 }
 
 // Paths against themselves: the error of n paths is their noise, sigma / sqrt(n). 4 and 64 paths
-// differ by 4 in the error.
+// differ by a factor of 4 in the error.
 TEST(Accuracy, PathsErrorFallsWithTheirRoot) {
   const scenes::Scene scene = plate_under_earth();
   const tests::Prepared prepared(scene);
@@ -220,13 +222,14 @@ TEST(Accuracy, PathsErrorFallsWithTheirRoot) {
     EXPECT_GT(result->cost.memory_bytes, 0.0);
     errors[k] = picture_error(result->luminance, truth, counted).error;
   }
-  // The square of either is known to sqrt(2 / 576) of itself.
+  // The square of either has a relative error of sqrt(2 / 576).
   EXPECT_NEAR(errors[0] / errors[1], 4.0,
               4.0 * 4.0 * std::sqrt(2.0 / 576.0) / 2.0 * std::sqrt(2.0));
 }
 
-// A lamp 0.16 pixels wide covers 0.02 of one of the plate's 64: with its light they would show 1.6
-// times as much, as far as paths meet it. Without it they show 500 / pi, and direct light is all.
+// A lamp 0.16 pixels wide covers 0.02 of one of the plate's 64 pixels: with its light the mean
+// would be 1.6 times as high, if paths hit it. Without it the pixels have 500 / pi, and all light
+// is direct.
 TEST(Accuracy, ALampSeenSmallIsNoPartOfTheTruth) {
   const scenes::Scene scene = tests::plate_behind_a_speck(0.01);
   const tests::Prepared prepared(scene);
@@ -248,8 +251,8 @@ TEST(Accuracy, ALampSeenSmallIsNoPartOfTheTruth) {
   EXPECT_LT(picture_error(result->luminance, truth, counted).high, 1e-6);
 }
 
-// A caller may watch over every solve: of one that is broken off nothing is kept. What the shelf
-// has is not solved again.
+// A caller may wrap every solve; the result of an interrupted solve is discarded. The shelf's
+// solution is not solved again.
 TEST(Accuracy, EverySolveIsTheCallersToWatch) {
   const scenes::Scene scene = plate_under_earth();
   const tests::Prepared prepared(scene);

@@ -12,7 +12,7 @@ namespace {
 using Indices = std::vector<std::size_t>;
 
 TEST(Pareto, FrontHoldsWhatNoPointBeats) {
-  // 2 is beaten by 1 (faster and as exact), 4 by 3.
+  // 2 is dominated by 1 (faster and as accurate), 4 by 3.
   const std::vector<Trade> points = {
       {"a", 1, 0.5}, {"a", 2, 0.2}, {"b", 3, 0.2}, {"b", 4, 0.1}, {"a", 5, 0.3}};
   EXPECT_EQ(pareto_front(points), (Indices{0, 1, 3}));
@@ -21,7 +21,7 @@ TEST(Pareto, FrontHoldsWhatNoPointBeats) {
 TEST(Pareto, FrontOfNoneOneAndEquals) {
   EXPECT_TRUE(pareto_front({}).empty());
   EXPECT_EQ(pareto_front({{"a", 1, 0.0}}), (Indices{0}));
-  // Equal seconds: the more exact one. Alike in both: the first.
+  // Equal seconds: the more accurate one. Equal in both: the first.
   EXPECT_EQ(pareto_front({{"a", 1, 0.5}, {"b", 1, 0.2}, {"c", 1, 0.2}}), (Indices{1}));
 }
 
@@ -36,13 +36,13 @@ TEST(Pareto, CheapestWithinIsTheFastestThatIsExactEnough) {
 }
 
 TEST(Pareto, MethodsAreWorthItWhereTheyAreTheCheapest) {
-  // Below 10 % b is cheaper than a; c is slower than either wherever it gets.
+  // Below 10 % b is cheaper than a; c is slower than both at any error.
   const std::vector<Trade> points = {{"a", 1, 0.3},  {"a", 2, 0.1},  {"a", 50, 0.01},
                                      {"b", 3, 0.05}, {"b", 9, 0.02}, {"c", 4, 0.2}};
   const std::vector<Worth> worth = worth_of_methods(points);
   ASSERT_EQ(worth.size(), 3U);
   EXPECT_EQ(worth[0].method, "a");
-  // The most exact point is a's: it is the cheapest way there, if a dear one.
+  // The most accurate point belongs to a, which is the cheapest there.
   EXPECT_TRUE(worth[0].ever);
   EXPECT_EQ(worth[0].down_to, 0.01);
   EXPECT_EQ(worth[0].then, "");

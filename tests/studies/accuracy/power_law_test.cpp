@@ -18,7 +18,7 @@ std::vector<ErrorAt> points_of(double factor, double exponent, double floor, int
   base::Rng rng(base::Key(seed, base::Stream::Test, 0));
   double x = 4.0;
   for (int k = 0; k < count; ++k, x *= step) {
-    // Twelve uniform numbers have variance 1: their sum less 6 is nearly normal.
+    // Twelve uniform numbers have variance 12 / 12 = 1: their sum minus 6 is nearly normal.
     double normal = -6.0;
     for (int j = 0; j < 12; ++j) normal += rng.next();
     points.push_back(
@@ -47,10 +47,10 @@ TEST(PowerLaw, FloorIsFoundAndDoesNotSpoilTheExponent) {
   EXPECT_NEAR(law->error_at(4.0), std::hypot(0.5 * std::pow(4.0, -0.7), 0.01), 1e-6);
 }
 
-// Least squares on a line with noise s of ln e: the slope's standard error is s / sqrt(sum (t -
-// mean t)^2); for t = k ln 4, k = 0..9, the sum is 82.5 ln^2 4. Estimated from the residuals it has
-// chi-square of 8 degrees of freedom, so over 400 draws the mean of its square is s^2 / 82.5 ln^2 4
-// to sqrt(2 / 8 / 400) = 2.5 %.
+// Least squares on a line with noise s of ln e: the slope's standard error is
+// s / sqrt(sum (t - mean t)^2); for t = k ln 4, k = 0..9, the sum is 82.5 ln^2 4. Estimated from
+// the residuals it has a chi-square distribution of 8 degrees of freedom: over 400 draws the mean
+// of its square is s^2 / 82.5 ln^2 4 with the relative error sqrt(2 / 8 / 400) = 2.5 %.
 TEST(PowerLaw, StandardErrorIsThatOfTheSlope) {
   constexpr int draws = 400;
   constexpr double noise = 0.1;
@@ -64,13 +64,13 @@ TEST(PowerLaw, StandardErrorIsThatOfTheSlope) {
     squares += std::pow(*law->exponent_error, 2);
     off += std::pow(law->exponent - 0.5, 2);
   }
-  // A floor that is not there is believed in when it explains enough, which chance does now and
-  // then: F > 4 of 1 and 7 degrees of freedom has a probability of 8.6 %, and half of that has the
-  // curve's bend on the side of a floor.
+  // Chance sometimes makes a floor significant: F > 4 of 1 and 7 degrees of freedom has a
+  // probability of 8.6 %, in half of these cases with the curvature of a floor.
   EXPECT_GT(lines, 0.85 * draws);
   const double expected = noise * noise / (82.5 * std::pow(std::log(4.0), 2));
   EXPECT_NEAR(squares / lines, expected, 0.15 * expected);
-  EXPECT_NEAR(off / lines, expected, 0.30 * expected);  // 4 sqrt(2 / 400), and no bent ones
+  EXPECT_NEAR(off / lines, expected, 0.30 * expected);  // 4 sqrt(2 / 400), and without the draws
+                                                        // with a floor
 }
 
 TEST(PowerLaw, TwoPointsHaveALineWithoutStandardError) {

@@ -35,7 +35,7 @@ Comparison compared(const scenes::Scene& scene, const scenes::Camera& camera,
   return compare(prepared, camera, options);
 }
 
-// A room whose floor lies in the shadow of a table: what reaches it there has been reflected.
+// A room with a floor in the shadow of a table, which only reflected light reaches.
 tests::SceneBuilder room_with_table() {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.7));
@@ -82,7 +82,7 @@ TEST(Compare, PlainRadiosityDiffersByItsNoiseAlone) {
   const Comparison comparison = compared(builder.scene, in_the_room(), {4}, 256);
   const MethodResult& radiosity = comparison.methods[1];
   EXPECT_GT(radiosity.error.error, 0.0);
-  // Noise of both pictures together, with room for the estimate's own error.
+  // Noise of both pictures together, with a margin for the error of the estimate.
   const double noise = std::hypot(radiosity.frame.report.relative_noise,
                                   comparison.reference().frame.report.relative_noise);
   EXPECT_LT(radiosity.error.error, 1.5 * noise);
@@ -102,7 +102,8 @@ TEST(Compare, LightThatOnlyReflectionCarriesMisleadsTheApproximation) {
       << verdict.sentence;
 }
 
-// One convex plate under a panel reflects nothing to itself: the lights' only fault is to be few.
+// A single convex plate under a panel has no interreflection: the only error is the number of
+// lights.
 TEST(Compare, DistributedLightsConverge) {
   auto builder = tests::plate_on_ground(0.0, 0.6);
   builder.scene.lamps.push_back(panel(0.8, 1.0));
@@ -119,8 +120,8 @@ TEST(Compare, DistributedLightsConverge) {
   EXPECT_EQ(verdict.verdict, ApproximationVerdict::NotMisled) << verdict.sentence;
 }
 
-// No light but the Sun's reaches the plate, and every method has that. A lamp before it, half a
-// pixel wide, is in every picture as its own samples meet it.
+// The plate has only sunlight, the same in every method. A lamp in front of it, half a pixel wide,
+// has random samples in every picture.
 TEST(Compare, ALampSeenSmallIsNoDifference) {
   const Comparison comparison =
       compared(tests::plate_behind_a_speck(0.03), tests::above(10.0, 2.0), {4});
@@ -133,7 +134,7 @@ TEST(Compare, ALampSeenSmallIsNoDifference) {
 }
 
 // Every wall emits M = 10 lm/m2 and reflects half: B = M + B / 2 = 20, of which 10 is reflected
-// light, and M / 2 = 5 reflected straight from the sources: half of what errors are relative to.
+// light, the reference of errors. Of this, M / 2 = 5, half, is light straight from the sources.
 TEST(Compare, ARoomThatGlowsIsComparedByWhatItReflects) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5, 10.0));
@@ -200,8 +201,8 @@ TEST(TargetDifference, MisleadsBeyondAFactorOrAContrast) {
   EXPECT_FALSE(misleads(100.0, 1.09));
   EXPECT_TRUE(misleads(100.0, 1.11));
   EXPECT_TRUE(misleads(100.0, 0.89));
-  EXPECT_TRUE(misleads(100.0, std::nullopt));  // a black surround that should not be
-  // Black where it should be: no ratio to object to.
+  EXPECT_TRUE(misleads(100.0, std::nullopt));  // a black surround that should not be black
+  // Black in both: the ratio has no meaning.
   EXPECT_FALSE(target_difference({0.0, 0.0, {}}, {0.0, 0.0, {}}).misleads);
   EXPECT_TRUE(target_difference({1.0, 0.0, {}}, {0.0, 0.0, {}}).misleads);
 }

@@ -59,9 +59,9 @@ TEST(DifferencePicture, ScaleIsNeutralInTheMiddleAndMonotoneToItsEnds) {
   for (std::size_t k = 40; k > 0; --k) EXPECT_LE(lightness(k - 1), lightness(k)) << k;
   for (std::size_t k = 43; k <= 80; ++k) EXPECT_GT(colours[k][0], colours[k][2]) << k;
   for (std::size_t k = 0; k <= 37; ++k) EXPECT_GT(colours[k][2], colours[k][0]) << k;
-  // Too bright and too dark by as much are about as far from white: within 35 of 255.
+  // Equal ratios up and down have nearly equal lightness: within 35 of 255.
   for (std::size_t k = 0; k < 40; ++k) EXPECT_NEAR(lightness(k), lightness(80 - k), 35.0) << k;
-  // The ends are the ends: 1.05^40 = 7, its inverse 0.14.
+  // The extreme ratios have the extreme bands: 1.05^40 = 7, its inverse 0.14.
   EXPECT_EQ(colours.back(), difference_bands.front().colour);
   EXPECT_EQ(colours.front(), difference_bands.back().colour);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sentences for cases that are easily got wrong.
+// Verdict sentences for difficult cases.
 #include <gtest/gtest.h>
 
 #include "studies/compare/yardstick.h"
@@ -63,7 +63,7 @@ TEST(CompareVerdict, BlackSurfacesLeaveNothingForRadiosityToAdd) {
   EXPECT_EQ(sentence(comparison), "quad-1: black by every method; there is nothing to tell.");
 }
 
-// Under a table that hides the lamp all light is reflected: none by direct light.
+// Under a table that hides the lamp all light is reflected, none direct.
 TEST(CompareVerdict, TargetInFullShadowIsBlackByTheApproximation) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.7));
@@ -117,7 +117,8 @@ TEST(CompareVerdict, WithoutWideSourcesThereIsNothingToDistribute) {
       << sentence(comparison);
 }
 
-// The mean of two references is off by 2 %: errors below that are named, the reference is not.
+// The mean of two references has an error of 2 %: errors below that are named, the reference is
+// not.
 TEST(Compare, ErrorsBelowTheReferencesOwnNoiseAreNamed) {
   Comparison comparison;
   comparison.methods.resize(4);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scaling laws of the expected cost on made-up reports whose answer is a sum done by hand, and the
-// bill: no ray and no second is in it twice or not at all.
+// Scaling laws of the predicted cost for synthetic reports with sums computed by hand. The bill
+// includes each ray and each second exactly once.
 #include "studies/cost/cost.h"
 
 #include <gtest/gtest.h>
@@ -42,8 +42,8 @@ radiosity::SolveReport small_solve() {
   return report;
 }
 
-// Four times the patches with 16 times the rays each, rows of 200 entries instead of 50:
-// 4 * 16 form-factor rays, 4 * 4 entries.
+// Four times the patches with 16 times the rays each, rows of 200 entries instead of 50: 4 * 16
+// form-factor rays, 4 * 4 entries.
 TEST(CostLaws, ASolveGrowsWithItsPatchesRaysAndEntries) {
   const radiosity::SolveReport whole = scaled(small_solve(), {4000.0, 16.0, 200.0, false});
   EXPECT_EQ(whole.patches, 4000U);
@@ -60,8 +60,8 @@ TEST(CostLaws, ASolveGrowsWithItsPatchesRaysAndEntries) {
   EXPECT_EQ(whole.shadow_rays, 48000U);
 }
 
-// Its rounds are solved with an eighth of the rays: 16 / 8 = 2 times as many as the small one's,
-// on 4 times the patches; never fewer than the small one's.
+// Its rounds use an eighth of the rays: 16 / 8 = 2 times as many as the small one's, on 4 times the
+// patches; never fewer than the small one's.
 TEST(CostLaws, RefinementGrowsWithAnEighthOfTheRays) {
   const radiosity::SolveReport whole = scaled(small_solve(), {4000.0, 16.0, 200.0, true});
   EXPECT_EQ(whole.refinement_rays, 80000U);
@@ -84,8 +84,8 @@ TEST(CostLaws, ASmallRunOfTheWholeIsTheWhole) {
   EXPECT_EQ(same.seconds, small.seconds);
 }
 
-// error = 0.2 (patches / 100)^-p: at p = 1/2, from 0.1 at 400 patches down to 0.02 takes 25 times
-// as many patches. Powers outside 1/4 .. 1 are held there.
+// error = 0.2 (patches / 100)^-p: at p = 1/2, from 0.1 at 400 patches to 0.02 takes 25 times as
+// many patches. Exponents are limited to 1/4 .. 1.
 TEST(CostLaws, PatchesFollowTheFallOfTheError) {
   const auto rounds = [](double power) {
     return std::vector<radiosity::RefineRound>{{100, 0.2}, {400, 0.2 * std::pow(4.0, -power)}};
@@ -96,21 +96,21 @@ TEST(CostLaws, PatchesFollowTheFallOfTheError) {
   EXPECT_NEAR(expected_patches(rounds(3.0), 0.2 / 128, 1e9), 800.0, 1e-6);
   EXPECT_NEAR(expected_patches(rounds(0.0), 0.1, 1e9), 400.0 * 16, 1e-6);
   EXPECT_NEAR(expected_patches({{100, 0.2}, {100, 0.1}}, 0.05, 1e9), 1600.0, 1e-6);
-  EXPECT_EQ(expected_patches(rounds(0.5), 0.1, 1e9), 400.0);  // there already
+  EXPECT_EQ(expected_patches(rounds(0.5), 0.1, 1e9), 400.0);  // already reached
   EXPECT_EQ(expected_patches({{100, 0.2}}, 0.02, 777.0), 777.0);
   EXPECT_EQ(expected_patches({}, 0.02, 777.0), 777.0);
 }
 
-// 24 rounds, each with a tenth more patches than the one before and hardly less error, leave one of
-// 25: a tenth more. What the last four rounds grew by most counts, not what they did before.
+// After 24 rounds, each with a tenth more patches than the last and hardly less error, one of 25
+// remains: a tenth more. The largest growth of the last four rounds counts, not earlier ones.
 TEST(CostLaws, PatchesGrowNoFasterThanTheRoundsThatAreLeft) {
   std::vector<radiosity::RefineRound> rounds = {{100, 0.2}, {400, 0.2}};
   while (rounds.size() < 24) rounds.push_back({rounds.back().patches * 11 / 10, 0.19});
   const auto last = double(rounds.back().patches);
   EXPECT_NEAR(expected_patches(rounds, 0.02, 1e9), 1.1 * last, 0.001 * last);
-  rounds.back().patches = rounds[22].patches;  // held back
+  rounds.back().patches = rounds[22].patches;  // limited by a budget
   EXPECT_NEAR(expected_patches(rounds, 0.02, 1e9), last, 0.001 * last);
-  rounds.push_back(rounds.back());  // no round is left
+  rounds.push_back(rounds.back());  // no round remains
   EXPECT_EQ(expected_patches(rounds, 0.02, 1e9), double(rounds.back().patches));
 }
 
@@ -139,7 +139,7 @@ TEST(CostLaws, APictureGrowsWithItsPixels) {
   EXPECT_EQ(whole.rays.mirror, 640U);
   EXPECT_EQ(whole.rays.refraction, 800U);
   EXPECT_EQ(whole.rays.layers, 960U);
-  EXPECT_EQ(whole.rays.planning, 70U);  // the look ahead is as large as the small picture
+  EXPECT_EQ(whole.rays.planning, 70U);  // the witness has as many rays as in the small picture
   EXPECT_EQ(whole.rays.shadow, 12800U);
   EXPECT_EQ(whole.rays.to_light[at(LightKind::Sun)], 8000U);
   EXPECT_EQ(whole.rays.to_light[at(LightKind::MeasuredLamp)], 4800U);
@@ -149,8 +149,7 @@ TEST(CostLaws, APictureGrowsWithItsPixels) {
 }
 
 // A pixel's cost is 10 + 320 / sqrt(pixels): 20 in 1024 pixels, 15 in 4096, 11.25 in 65 536.
-// Seconds in the same way, gather and all else each for itself; what costs the same in both stays
-// so.
+// Seconds likewise, separately for gathering and the rest; equal costs in both pictures stay equal.
 TEST(CostLaws, APixelCostsLessWhereFewerAreOnEdges) {
   SmallPicture coarse{small_picture(), 1024.0}, fine{small_picture(), 4096.0};
   coarse.report.rays.gather = 20 * 1024, fine.report.rays.gather = 15 * 4096;
@@ -162,7 +161,7 @@ TEST(CostLaws, APixelCostsLessWhereFewerAreOnEdges) {
   EXPECT_EQ(report.rays.camera, 12288U);
   EXPECT_NEAR(report.gather_seconds, 11.25 * 4096, 1e-6);
   EXPECT_NEAR(report.seconds, 13.25 * 4096, 1e-6);
-  // Noise makes no picture free, nor one that costs more than the finer one.
+  // For any noise, the cost is at least a third of the finer picture's, and at most equal to it.
   coarse.report.rays.gather = 1000 * 1024;
   EXPECT_EQ(as_part_of(65536.0, coarse, fine).rays.gather, 20480U);
   coarse.report.rays.gather = 1024;
@@ -194,8 +193,8 @@ Bill bill_of_two() {
   return bill;
 }
 
-// What a look all over the picture tells goes before what its error alone does: of few samples it
-// looks larger than it is, so that time grows as it, not as its square.
+// A growth estimated from the whole picture has priority over its error alone. With few samples the
+// error looks larger than it is, so that time grows as the error, not as its square.
 TEST(CostLaws, ACutPictureGrowsAsItsErrorUnlessItKnowsMore) {
   raytrace::RenderReport report;
   report.relative_noise = 0.4;
@@ -209,7 +208,7 @@ TEST(CostLaws, ACutPictureGrowsAsItsErrorUnlessItKnowsMore) {
   EXPECT_EQ(samples_growth(report, 0.05), 1.0);
 }
 
-// It ends by the clock, and ranks that ended at different times would wait for each other for ever.
+// It ends by the clock; ranks that ended at different times would wait for each other forever.
 TEST(Pilot, RanksDoItWithoutAWord) {
   tests::SceneBuilder builder;
   const std::uint32_t wall = builder.material(tests::grey(0.5, 1.0));
@@ -227,8 +226,7 @@ TEST(Pilot, RanksDoItWithoutAWord) {
 }
 
 // Every counter of solve and pictures is in one row, once: the rows add up to the sum by hand.
-// Seconds likewise, but for those of the direct light that its sources do not own (none here:
-// 1.5 + 3.5 = 5).
+// Seconds likewise, except for direct light without a source (none here: 1.5 + 3.5 = 5).
 TEST(Bill, TheSharesAddUpToTheWhole) {
   for (const bool between : {true, false}) {
     for (const bool apart : {true, false}) {
@@ -236,7 +234,7 @@ TEST(Bill, TheSharesAddUpToTheWhole) {
       effects.interreflection = between;
       Bill bill = bill_of_two();
       for (auto& picture : bill.pictures) {
-        if (!apart) picture.gather_seconds = 0.0;  // as of paths
+        if (!apart) picture.gather_seconds = 0.0;  // as for path tracing
       }
       double rays = 64000.0 + 10000.0 + 12000.0, rows = 0.0, seconds = 0.0;
       for (const auto& picture : bill.pictures) {
@@ -280,11 +278,11 @@ TEST(Bill, EachKindOfRayGoesToItsEffect) {
     ASSERT_TRUE(costs.count(effect) == 1) << effect;
     EXPECT_DOUBLE_EQ(costs.at(effect).rays, count) << effect;
   }
-  // The stages but for the direct light, and both gathers.
+  // The stages except direct light, and both gathers.
   EXPECT_NEAR(costs.at("interreflection").seconds, 1 + 2 + 3 + 7 + 11 + 2 * 2.0, 1e-9);
 }
 
-// With nothing between surfaces the hemisphere is searched for the Earth alone.
+// Without interreflection the hemisphere is searched for the Earth only.
 TEST(Bill, WithoutInterreflectionTheGatherIsTheEarths) {
   Bill bill;
   bill.pictures = {small_picture()};

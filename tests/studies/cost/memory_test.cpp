@@ -28,7 +28,7 @@ double part(const MemoryNeed& need, const std::string& name) {
 
 TEST(Memory, TheMatrixIsThereOnceAndTwiceWhileItIsCopied) {
   // 500 million entries of a number and a count, 8 bytes; a sixteenth more while bands of rows are
-  // joined; some 350 bytes a patch.
+  // joined; some 350 bytes per patch.
   MemoryCase sizes = large_solve();
   sizes.columns = 0;
   const double joined = part(memory_needed(sizes), "form factors");
@@ -44,11 +44,11 @@ TEST(Memory, RanksDivideEntriesAndVectors) {
   MemoryCase sizes = large_solve();
   const double whole = memory_needed(sizes).total();
   sizes.ranks = 8;
-  // Of 4 GB an eighth, and while it is dealt out half of that more.
+  // An eighth of 4 GB, and half as much again while rows are sent.
   EXPECT_NEAR(whole - memory_needed(sizes).total(), 4e9 * (1.0625 - 1.5 / 8.0), 0.3e9);
-  // So few entries that the linear solve takes most. With 6 columns, packed in eights, an eighth
-  // each has of 80 bytes of entries a patch, of nine vectors and direct light of 48, and of 24 of
-  // reflectance.
+  // So few entries that the linear solve takes most. With 6 columns, packed to 8, each rank has an
+  // eighth of 80 bytes of entries per patch, of 480 bytes of nine vectors and direct light, and of
+  // 24 of reflectance.
   sizes.row_entries = 10.0;
   sizes.columns = 6;
   const double of_eight = memory_needed(sizes).total();
@@ -57,8 +57,8 @@ TEST(Memory, RanksDivideEntriesAndVectors) {
   sizes.ranks = 8;
   sizes.first_rank = false;
   EXPECT_EQ(memory_needed(sizes).total(), of_eight);
-  // Of the error over the surfaces the first has what comes back, six columns of 8 bytes, 190 bytes
-  // of what samples found and the 80 of the rows; of these the others have 24.
+  // For the error over the surfaces the root rank has the returned values, six columns of 8 bytes,
+  // 190 bytes of samples and the 80 of the rows; of the latter the others have 24.
   sizes.columns = 3;
   sizes.states_error = true;
   const double others = memory_needed(sizes).total();
@@ -82,7 +82,7 @@ TEST(Memory, APictureOfManyLayersOutweighsItsSolution) {
   sizes.layers = 8;
   const MemoryNeed need = memory_needed(sizes);
   EXPECT_GE(part(need, "picture"), 27.0 * 4.0 * double(sizes.pixels));
-  EXPECT_EQ(part(need, "form factors"), 0.0);  // gone before the picture is begun
+  EXPECT_EQ(part(need, "form factors"), 0.0);  // freed before the picture begins
   EXPECT_NE(memory_remedy(need).find("--size"), std::string::npos);
   EXPECT_NE(memory_remedy(memory_needed(large_solve())).find("max_patches"), std::string::npos);
 }
@@ -93,7 +93,7 @@ TEST(Memory, ASolutionThatIsReadNeedsNoMatrix) {
   EXPECT_LT(memory_needed(sizes).total(), 0.04 * memory_needed(large_solve()).total());
 }
 
-// A room whose patches all see one another.
+// A room whose patches all see each other.
 tests::SceneBuilder lit_room() {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5, 1.0));
@@ -130,10 +130,10 @@ TEST(Memory, EveryLayerOfThePictureCounts) {
   EXPECT_NEAR(bytes({"albedo"}) - bytes({}), 12e6, 1.0);
   // Three ranks of two objects and the preview: 15 channels.
   EXPECT_NEAR(bytes({"crypto_object"}) - bytes({}), 60e6, 1.0);
-  // A part is summed apart, 12 bytes, with the two others.
+  // A part has its own sum, 12 bytes, and requires the two others.
   EXPECT_NEAR(bytes({"direct"}) - bytes({}), 12e6 + 36e6, 1.0);
-  // To a wanted error rays are cast round by round: sums of 12 bytes of three kinds, one of them as
-  // shared, and a tenth more for strays, stay until the end.
+  // With a wanted error rays are cast in rounds: sums of 12 bytes of three kinds, one of them also
+  // denoised, and a tenth more for off-grid points, remain until the end.
   const double at_once = bytes({});
   picture.error = 0.05;
   EXPECT_NEAR(bytes({}) - at_once, 55e6, 3e6);
@@ -151,7 +151,7 @@ TEST(Memory, RowsExpectedAreTheRowsThatAreCast) {
   const double expected =
       radiosity::expected_rows(builder.scene, prepared.query, patches.count(), 256).entries;
   EXPECT_NEAR(expected / cast, 1.0, 0.1);
-  // Never more than the rays.
+  // At most the number of rays.
   EXPECT_LE(radiosity::expected_rows(builder.scene, prepared.query, 1U << 26U, 256).entries, 256.0);
 }
 

@@ -17,9 +17,9 @@ namespace {
 
 using scenes::EarthModel;
 
-// The same real numbers on two ways. Floats that are rounded, each by 2^-24 of itself: of every
-// group radiosity, its share at a point, pixel, weight and product, of the sum as many additions as
-// there are groups; as many again in the picture of all lights together.
+// Rounding error between two orders of the same computation in floats, 2^-24 for each operation:
+// for every group radiosity, its share at a point, pixel, weight and product; for the sum as many
+// additions as there are groups; the same again in the picture of all lights together.
 double rounding(std::size_t groups) { return (10.0 + double(groups)) * 0x1p-24; }
 
 // Where light varies within a pixel, its gather rays start all over it (GatherField::
@@ -44,7 +44,8 @@ void expect_equal_pictures(const base::Image& a, const base::Image& b, std::size
   }
 }
 
-// Lamps without any light cut no patches: a trace of it keeps those of the scene with all lamps.
+// Black lamps do not refine patches: a trace of light keeps the patches of the scene with all
+// lamps.
 scenes::Scene with_a_trace(scenes::Scene scene) {
   for (scenes::Lamp& lamp : scene.lamps) {
     lamp.intensity_cd = glm::max(lamp.intensity_cd, Rgb(1e-30));
@@ -94,8 +95,8 @@ TEST(BasisSum, OnePlaceKeepsTheScenesSunAndEarth) {
                tests::into_the_room());
 }
 
-// Plates that throw no light on each other: the parts' Suns have other random numbers than the
-// scene's, which nothing but the radiosity of half-shaded patches could show.
+// Plates without interreflection: the random numbers of the parts' Suns differ from the scene's,
+// which affects only the radiosity of half-shaded patches.
 TEST(BasisSum, AnEvenEarthInAFixedPlaceIsExact) {
   auto builder = tests::plate_on_ground(0.3, 0.6);
   builder.scene.lamps = {tests::point_lamp("lamp", "lamp", {1, 1, 1}, Rgb(2e4))};
@@ -106,15 +107,15 @@ TEST(BasisSum, AnEvenEarthInAFixedPlaceIsExact) {
   const std::vector<Rgb> light(basis.groups().count(), Rgb(1.0));
   for (std::size_t place = 0; place < 3; ++place) {
     const auto error = basis_error(basis.weights(place, 1), light);
-    ASSERT_TRUE(error) << place;  // an even Earth shines at night too
+    ASSERT_TRUE(error) << place;  // a uniform Earth shines at night, too
     EXPECT_LT(error->bound, 1e-13);
     EXPECT_LT(error->rms, 1e-13);
   }
 }
 
-// A plate that faces the Earth half, seen by day. Both pictures have the same rays: each ray that
-// meets cell k carries L instead of w_k, off by max|L - w_k| at most, so that the difference of the
-// pictures is within the bound without any noise between them. Only rounding comes on top.
+// A tilted plate that sees half of the Earth by day. Both pictures have the same rays: a ray to
+// cell k carries w_k instead of L, with an error of at most max|L - w_k|. Hence the difference of
+// the pictures is within the bound without noise, except for rounding.
 struct Judged {
   double off = 0.0;  // relative, of the target's luminance
   BasisError error;
@@ -158,9 +159,9 @@ TEST(BasisSum, TheEarthsCellsErrBelowTheirBound) {
   }
 }
 
-// At noon L goes as cos(gamma), gamma up to 20.4 deg from the point below: from 1 to 0.937. No cell
-// is further from its mean than that range, and the Sun, which is exact, only dilutes. With cells
-// of a quarter of the disc's breadth it is a fraction of it.
+// At noon L is proportional to cos(gamma), gamma up to 20.4 deg from the point below: from 1 to
+// 0.937. No cell differs from its mean by more than that range, and the exact light of the Sun only
+// dilutes it. Cells of a quarter of the disc's width have a fraction of it.
 TEST(BasisSum, TheBoundSaysSomething) {
   const double range = 1.0 - (base::earth_radius_m / (base::earth_radius_m + 425e3));
   const double one_ring = judged("bay-to-earth", 0.0, {2, 2}).error.bound;
@@ -171,7 +172,8 @@ TEST(BasisSum, TheBoundSaysSomething) {
   EXPECT_LT(judged("bay-to-earth", 0.0, {1000, 2}).error.bound, 0.3 * fine);
 }
 
-// A camera or a mirror may see any one direction of a cell: none is off by more than is said.
+// A camera or a mirror may see any one direction of a cell: no direction has a larger error than
+// stated.
 TEST(BasisSum, NoDirectionOfACellIsFurtherOffThanItsLargest) {
   for (const char* attitude : {"bay-to-earth", "bay-to-sun"}) {
     const auto places =
@@ -196,7 +198,7 @@ TEST(BasisSum, NoDirectionOfACellIsFurtherOffThanItsLargest) {
         if (off > 0.0) worst = std::max(worst, off / std::max(weights.largest[group], 1e-300));
       }
       EXPECT_LE(worst, 1.0) << attitude << ' ' << place;
-      if (worst > 0.0) {  // by day; the figure is reached, too
+      if (worst > 0.0) {  // by day; the bound is also reached
         EXPECT_GT(worst, 0.9) << attitude << ' ' << place;
       }
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which groups and weights a light basis has. What their sums are worth: basis_sum_test.cpp.
+// Groups and weights of a light basis; basis_sum_test.cpp tests their sums.
 #include "studies/light/light_basis.h"
 
 #include <gtest/gtest.h>
@@ -85,7 +85,7 @@ TEST(LightBasis, WhatIsOffInAllSettingsHasNoGroup) {
   EXPECT_TRUE(one_place(scene, {{"dark", true, {}}}).groups().names.empty());
 }
 
-// A lamp with the name of another's group: in one setting they are dimmed alike, in the other not.
+// A lamp with the name of another's group: one setting dims both equally, the other does not.
 TEST(LightBasis, ALampNamedLikeAnotherGroupKeepsItsOwnWeight) {
   scenes::Scene scene = tests::open_room();
   scene.lamps[0].name = "bay";
@@ -97,7 +97,7 @@ TEST(LightBasis, ALampNamedLikeAnotherGroupKeepsItsOwnWeight) {
   EXPECT_EQ(b.weight[basis.groups().lamp[0]], Rgb(0.25));
 }
 
-// The groups of a sky in parts are named by the program; scenes may have lamps of these names.
+// The program names the groups of a sky in parts; scenes may have lamps with these names.
 TEST(LightBasis, LampsNamedLikePartsOfTheSkyAreApartFromThem) {
   scenes::Scene scene = tests::open_room();
   scene.lamps[0].group = "sun-0";
@@ -133,7 +133,7 @@ TEST(LightBasis, UnknownLampsAndNegativeFactorsAreRefused) {
 TEST(LightBasis, EqualSunsAreOne) {
   const scenes::Scene scene = tests::open_room();
   const std::vector<LampSetting> lamps = {{"on", false, {}}};
-  // Once around, and 0 again as 360 deg; night between some 110 and 250 deg.
+  // Once around, and 0 again as 360 deg; night between about 110 and 250 deg.
   const auto places = tests::orbit_places({0, 90, 180, 270, 360, -90}, EarthModel::Lambert);
   const LightBasis basis(scene, places, lamps);
   EXPECT_EQ(basis.sun_parts(), 3U);
@@ -168,13 +168,13 @@ TEST(LightBasis, InTheUmbraSunAndEarthWeighNothing) {
   for (std::size_t g = 0; g < lamps; ++g) EXPECT_GT(noon.weight[g].g, 0.0);
 }
 
-// Weight times the group's own Sun is the Sun of the place, and half of it where the limb stands
-// before its middle, with what the limb bends away from a straight one, r cot(h) / (3 pi) of the
-// disc. Another brightness is no other Sun.
+// Weight times the group's Sun is the Sun at the place. If the limb crosses the disc's centre it is
+// half of it, corrected for the curvature of the limb, r cot(h) / (3 pi) of the disc. A Sun of
+// different illuminance is no separate Sun.
 TEST(LightBasis, APartlyHiddenSunWeighsItsShare) {
   auto places = tests::orbit_places({0, 60, 60}, EarthModel::Lambert, "bay-to-earth", 0.2666);
   places[2].sun->illuminance_lx = Rgb(100, 200, 0);
-  // At the limb: the Sun's middle stands the Earth's half angle from its centre.
+  // At the limb: the Sun's centre is at the Earth's half angle from its centre.
   SkyPlace limb = places[0];
   const double h = base::radians(limb.earth->half_angle_deg);
   limb.earth->direction = Vec3(0, 0, 1);
@@ -213,7 +213,7 @@ TEST(LightBasis, EarthSunOrBothMayBeMissing) {
   const LightBasis none(scene, {SkyPlace{}, SkyPlace{}}, {{"on", false, {}}});
   EXPECT_EQ(none.groups().names, (std::vector<std::string>{"spot", "bay", "panels"}));
   EXPECT_EQ(none.weights(1, 0).weight.size(), 3U);
-  // A Sun that gives nothing.
+  // A Sun without light.
   auto dark = tests::orbit_places({0, 90}, EarthModel::Lambert);
   for (SkyPlace& place : dark) place.sun->illuminance_lx = Rgb(0.0);
   const LightBasis black(scene, dark, {{"on", false, {}}});

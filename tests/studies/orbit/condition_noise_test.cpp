@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said of the noise of conditions, with light and with hardly any.
+// Texts about the noise of conditions, with light and almost without.
 #include "studies/orbit/condition_noise.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 const std::array<std::string, 3> names = {"0 deg, on", "60 deg, on", "90 deg, on"};
 
-// 0.2 of 4 cd/m^2 are 5 %; 3 of 0.3 cd/m^2 would be 1000 %, which is no figure of that light.
+// 0.2 of 4 cd/m^2 are 5 %; 3 of 0.3 cd/m^2 would be 1000 %, which is meaningless for that light.
 TEST(NoiseText, MoreNoiseThanLightHasNoShareOfIt) {
   const ConditionNoise lit = noise_of_condition(0.2, 4.0), dark = noise_of_condition(3.0, 0.3);
   EXPECT_NEAR(lit.relative.value(), 0.05, 1e-15);

@@ -15,7 +15,7 @@ namespace {
 
 using scenes::EarthModel;
 
-// What a camera over a scene makes of it along some places, with its lamps on and off.
+// A camera's view of a scene at some places, with its lamps on and off.
 struct Judge {
   scenes::Scene scene;
   scenes::Camera camera = tests::above(3.0, 2.0);
@@ -38,14 +38,14 @@ struct Judge {
   }
 };
 
-// A plate on ground, a lamp over it.
+// A plate on ground, a lamp above it.
 tests::SceneBuilder plate_and_lamp() {
   auto builder = tests::plate_on_ground(0.3, 0.6);
   builder.scene.lamps = {tests::point_lamp("lamp", "lamp", {0.2, 0.1, 6.0}, Rgb(4e5))};
   return builder;
 }
 
-// Noon with the Sun overhead, in the nose of a spacecraft that looks away from the Earth; midnight.
+// Noon with the Sun overhead, for a spacecraft whose bay faces away from the Earth; and midnight.
 std::vector<SkyPlace> noon_and_midnight() {
   return tests::orbit_places({0, 180}, EarthModel::Lambert, "bay-to-space");
 }
@@ -60,8 +60,8 @@ SourceOnTarget source_of(const TargetOutcome& target, const std::string& group) 
 TEST(Condition, LuminanceByGroupAddsUpToTheTargets) {
   auto builder = plate_and_lamp();
   builder.quad(1, {0.7, -0.5, 0}, {0.7, -0.5, 0.5}, {0.7, 0.5, 0.5},
-               {0.7, 0.5, 0});  // throws light
-  // At 260 deg the Sun stands over the limb, on the side of the Earth.
+               {0.7, 0.5, 0});  // adds reflected light
+  // At 260 deg the Sun is above the limb, on the side of the Earth.
   const Judge judge(builder.scene, tests::orbit_places({60, 260, 180}, EarthModel::Lambert));
   const Judge still(builder.scene, {judge.basis.places()[1]});
   for (const auto& [of, place, setting] :
@@ -95,7 +95,7 @@ TEST(Condition, ASourceThatIsOffSaysWhy) {
   EXPECT_EQ(judge.at(1, 0).sun_share, 0.0);
 }
 
-// E of the Sun overhead on rho 0.6, and I cos^3 / d^2 of the lamp: direct light is all there is.
+// E of the Sun overhead on rho 0.6, and I cos^3 / d^2 of the lamp: there is only direct light.
 TEST(Condition, SourcesHaveTheirDirectLight) {
   const Judge judge(plate_and_lamp().scene, noon_and_midnight());
   const TargetOutcome noon = judge.at(0, 0).targets[0];
@@ -110,7 +110,7 @@ TEST(Condition, SourcesHaveTheirDirectLight) {
 }
 
 TEST(Condition, BehindAWallNothingIsLit) {
-  // A roof over the plate, out of the camera's sight below it: no Sun, no lamp above it.
+  // A roof above the plate and above the camera: no Sun, no lamp.
   auto builder = plate_and_lamp();
   builder.plate(1, 9.0, 1.0, true);
   builder.scene.objects[2].name = "roof";
@@ -130,7 +130,7 @@ TEST(Condition, BehindAWallNothingIsLit) {
   }
 }
 
-// What the Earth's night side would give by day is what it gives at noon, with the Sun behind the
+// The unshadowed light of the Earth's night side is its light at noon, with the Sun behind the
 // spacecraft.
 TEST(Condition, NightSideSaysWhatTheDaySideWouldGive) {
   const Judge judge(plate_and_lamp().scene, tests::orbit_places({0, 180}, EarthModel::Lambert));
@@ -142,7 +142,7 @@ TEST(Condition, NightSideSaysWhatTheDaySideWouldGive) {
 }
 
 TEST(Condition, LampsKnowHowFarTheTargetIs) {
-  // The plate's middle at x = 0.3, a lamp 6 m over (0.2, 0.1).
+  // The plate's centre is at x = 0.3, a lamp 6 m above (0.2, 0.1).
   auto builder = plate_and_lamp();
   for (std::size_t k = 4; k < 8; ++k) builder.scene.vertices[k].x += 0.3;
   const Judge judge(builder.scene, noon_and_midnight());
@@ -202,9 +202,8 @@ TEST(Condition, OutOfViewNothingIsSaid) {
   }
 }
 
-// Midnight with the lamps off is alike to the last bit in two places, and so it is with lamps too
-// weak to show anything; but the target is then brighter than before, and has reasons of its own.
-// At noon it is identified.
+// Midnight with the lamps off is identical at two places. With very weak lamps it is identical,
+// too, but the target is brighter than without, and has its own reasons. At noon it is identified.
 TEST(Condition, ReasonsAreWorkedOutOncePerRunOfLikeConditions) {
   const Judge judge(plate_and_lamp().scene,
                     tests::orbit_places({180, 181, 0}, EarthModel::Lambert, "bay-to-space"));

@@ -14,7 +14,7 @@ class StudyFiles : public testing::Test {
     test::write_bytes(folder_ / "s.toml", text);
     return read_study_file(folder_ / "s.toml");
   }
-  // Refused at `line` of the file, with all of the words.
+  // Expects an error at `line` of the file that contains all of the words.
   void refused(const std::string& text, int line, const std::vector<std::string>& words) const {
     const std::string said = test::error_of(base::Blame::Input, [&] { (void)read(text); });
     EXPECT_NE(said.find("s.toml:" + std::to_string(line) + ":"), std::string::npos) << said << "\n"

@@ -9,8 +9,8 @@ namespace earthshine::studies {
 namespace {
 
 TEST(LeastFactor, IsWhereARisingProbabilityPassesWhatIsWanted) {
-  // P = x / (x + a) is p at x = a p / (1 - p); found to a hundredth of itself, from above, and
-  // never less than the first factor that is tried.
+  // P = x / (x + a) is p at x = a p / (1 - p). The result is at most 1 % above it, and never less
+  // than the first trial factor.
   for (const double a : {0.004, 0.02, 0.3, 1.0, 2.5}) {
     for (const double wanted : {0.1, 0.5, 0.7}) {
       const auto found = least_factor([a](double x) { return x / (x + a); }, wanted);
@@ -42,7 +42,7 @@ TEST(LeastFactor, IsNotThereWhereNoLightWillDo) {
   EXPECT_TRUE(least_factor([](double x) { return x >= 8.0 ? 1.0 : 0.0; }, 0.5));
 }
 
-// Any light at all may do, as for an eye that sees a contrast: the first step is then the answer.
+// Any light may suffice, as for an eye that sees a contrast: the result is the first step.
 TEST(LeastFactor, IsTheFirstStepWhereAnyLightWillDo) {
   EXPECT_EQ(least_factor([](double x) { return x > 0.0 ? 1.0 : 0.0; }, 0.5), least_lamp_factor);
 }
@@ -63,26 +63,27 @@ void expect_arcs(const Arcs& found, const Arcs& expected) {
 }
 
 TEST(ArcsAbove, CrossingsLieOnTheStraightLineBetweenNeighbours) {
-  // 0.2 to 1 over 90 deg passes 0.6 half way, 1 to 0.5 over 90 deg passes it at 4/5.
+  // 0.2 to 1 over 90 deg crosses 0.6 half way, 1 to 0.5 over 90 deg crosses it at 4/5.
   expect_arcs(arcs_above({0, 90, 180, 270}, {0.2, 1.0, 0.5, 0.0}, 0.6, false), {{45, 162}});
   expect_arcs(arcs_above({0, 90, 180, 270}, {0.2, 1.0, 0.5, 0.0}, 0.6, true), {{45, 162}});
-  // Two of them, the second to the last position; a value that is just reached is in.
+  // Two arcs, the second up to the last position; a value equal to the wanted one is inside.
   expect_arcs(arcs_above({0, 10, 20, 30, 40}, {0.0, 0.6, 0.0, 0.0, 1.0}, 0.6, false),
               {{10, 10}, {36, 40}});
 }
 
 TEST(ArcsAbove, WithoutAnEndTheyGoOnOverTheStart) {
-  // In from 0.5 at 270 (just) to 360 = 0, and on to 0.5 between 0 (1) and 90 (0): at 45.
+  // Begins at 270, where 0.5 is just reached, and ends at 45, where 0.5 is crossed between 0 (1)
+  // and 90 (0).
   expect_arcs(arcs_above({0, 90, 180, 270}, {1.0, 0.0, 0.0, 0.5}, 0.5, true), {{-90, 45}});
-  // The last position is out: it begins on the line from 270 (0) to 360 (1).
+  // The last position is outside: the arc begins on the line from 270 (0) to 360 (1).
   expect_arcs(arcs_above({0, 90, 180, 270}, {1.0, 0.0, 0.0, 0.0}, 0.5, true), {{-45, 45}});
-  // The first is out: it ends on the line from 270 (1) to 360 (0.2), at 0.5 / 0.8 of it.
+  // The first is outside: the arc ends on the line from 270 (1) to 360 (0.2), at 0.5 / 0.8 of it.
   expect_arcs(arcs_above({0, 90, 180, 270}, {0.2, 0.0, 0.0, 1.0}, 0.5, true),
               {{225, 270 + 90 * 0.625}});
-  // With an arc of its own in the middle.
+  // With another arc in the middle.
   expect_arcs(arcs_above({0, 90, 180, 270}, {1.0, 0.0, 1.0, 0.0}, 0.5, true),
               {{-45, 45}, {135, 225}});
-  // Open, the ends are those of the positions.
+  // Open: the arcs end at the first and last positions.
   expect_arcs(arcs_above({0, 90, 180, 270}, {1.0, 0.0, 0.0, 1.0}, 0.5, false),
               {{0, 45}, {225, 270}});
 }

@@ -34,7 +34,7 @@ TEST(Johnson, FollowsTheTargetTransferFunction) {
   }
 }
 
-// The pixels of a picture of 200 x 100 for which inside(x, y) holds at their centre.
+// The pixels of a picture of 200 x 100 whose centres satisfy inside(x, y).
 template <class F>
 std::vector<std::uint32_t> pixels_of(F inside) {
   std::vector<std::uint32_t> pixels;
@@ -61,7 +61,7 @@ TEST(LeastExtent, OfRectanglesIsTheShorterSide) {
   const Extent flat =
       extent_of(pixels_of([](double x, double y) { return std::abs(x) < 30 && std::abs(y) < 5; }));
   EXPECT_NEAR(flat.pixels, 10.0, 1e-12);
-  EXPECT_NEAR(std::abs(std::sin(flat.direction_rad)), 1.0, 1e-12);  // from line to line
+  EXPECT_NEAR(std::abs(std::sin(flat.direction_rad)), 1.0, 1e-12);  // across the two lines
   const Extent upright =
       extent_of(pixels_of([](double x, double y) { return std::abs(x) < 4 && std::abs(y) < 20; }));
   EXPECT_NEAR(upright.pixels, 8.0, 1e-12);
@@ -69,7 +69,7 @@ TEST(LeastExtent, OfRectanglesIsTheShorterSide) {
 }
 
 TEST(LeastExtent, OfASlantedStripIsItsWidth) {
-  // Corners of pixels reach beyond the strip by up to (cos + sin) / 2 on either side.
+  // Corners of pixels extend beyond the strip by up to (cos + sin) / 2 on each side.
   const double c = std::cos(0.6), s = std::sin(0.6);
   const Extent strip = extent_of(pixels_of([&](double x, double y) {
     return std::abs(c * x + s * y) < 40 && std::abs(c * y - s * x) < 4;
@@ -110,7 +110,7 @@ TEST(Eye, ThresholdsAreThoseOfThePublishedLaw) {
   EXPECT_NEAR(threshold_difference(0.1), std::pow(10.0, -1.395), 1e-9);
   EXPECT_NEAR(threshold_difference(1.0), std::pow(10.0, -0.40749), 1e-5);
   EXPECT_EQ(threshold_difference(0.0), threshold_difference(1e-5));
-  // The pieces meet: within 4 % at each joint, the law's own rounding.
+  // The parts are continuous within 4 % at each joint, the rounding of the law.
   for (const double x : {-3.94, -1.44, -0.0184, 1.9}) {
     EXPECT_NEAR(threshold_difference(std::pow(10.0, x - 1e-6)) /
                     threshold_difference(std::pow(10.0, x + 1e-6)),

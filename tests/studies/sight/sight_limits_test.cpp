@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What limits a sight: the finest cycles that are left, and the least of size, noise and the eye.
+// Limits of a sight: the limiting frequency, and the least of size, noise and the eye.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,9 +19,9 @@ using tests::plain_cctv;
 using tests::sight_of;
 using tests::with_noise;
 
-// C0 MTF(u) = 3 / SNR: at the limiting frequency what the chain leaves of the difference is three
-// times the noise of a bar half a period wide and as long as the target, that of the target's mean
-// times the square root of the bars, 2 u lines.
+// C0 MTF(u) = 3 / SNR: at the limiting frequency the difference after the chain is three times the
+// noise of a bar, half a period wide and as long as the target: the noise of the target's mean
+// times the square root of the number of bars, 2 u lines.
 TEST(SightLimits, LimitingFrequencyLeavesThreeTimesTheNoiseOfABar) {
   degrade::Setup setup = with_noise(plain_cctv(disc_edge, disc_edge, 100.0), 0.25);
   setup.camera.lens_blur = 1.0;
@@ -38,8 +38,8 @@ TEST(SightLimits, LimitingFrequencyLeavesThreeTimesTheNoiseOfABar) {
   EXPECT_NEAR(*sight.johnson_cycles, lines * u, 1e-9);
 }
 
-// Noise blurred with the picture is as wide as this target: a bar scatters as much as a resel, and
-// no more. C0 / (3 / SNR) is then CNR sqrt(6 frames) / 3.
+// Noise blurred with the picture is as wide as this target: the variance of a bar equals the
+// variance of a resel. C0 / (3 / SNR) is then CNR sqrt(6 frames) / 3.
 TEST(SightLimits, ABarIsNoNoisierThanAResel) {
   degrade::Setup setup = with_noise(plain_cctv(disc_edge, disc_edge, 100.0), 0.0, 0.03);
   setup.camera.blur_h = setup.camera.blur_v = 2.0;
@@ -54,7 +54,7 @@ TEST(SightLimits, ABarIsNoNoisierThanAResel) {
               1e-2 * expected);
 }
 
-// A grating through the whole chain: the amplitude that its screen has left, by projection.
+// A grating through the whole chain: its amplitude on the screen, by projection.
 TEST(SightLimits, ModulationIsThatOfAGratingOnTheScreen) {
   constexpr int resels = 96, fine = 8;
   degrade::Setup setup = plain_cctv(resels, resels, 100.0);
@@ -112,7 +112,7 @@ TEST(SightLimits, ProbabilityIsTheLeastOfSizeNoiseAndTheEye) {
   for (const double p : {by_noise.detect, by_noise.recognise, by_noise.identify}) {
     EXPECT_NEAR(p, 0.5, 1e-6);
   }
-  // Below the eye's threshold no frequency is left either; at 1.02 times it P = 1 - 2^-(1.02^3.5).
+  // Below the eye's threshold no frequency is resolved; at 1.02 times it P = 1 - 2^-(1.02^3.5).
   const double at_threshold = eye.eye.threshold_factor;
   eye.eye.threshold_factor = 1.02 * at_threshold;
   EXPECT_EQ(sight_of(picture, setup, eye).probability->detect, 0.0);
@@ -121,8 +121,8 @@ TEST(SightLimits, ProbabilityIsTheLeastOfSizeNoiseAndTheEye) {
               1.0 - std::exp2(-std::pow(1.02, 3.5)), 0.01);
 }
 
-// Left of the middle brighter than the ground by 20, right of it darker by as much: on average
-// nothing, but 20 everywhere.
+// Left of the middle brighter than the ground by 20, right of it darker by 20: no difference on
+// average, but 20 everywhere.
 TEST(SightLimits, TargetLitFromOneSideStandsOutOnBoth) {
   auto picture = discs_on(40.0, {{60.0, 60.0, 20.0, 40.0}}, disc_edge, disc_edge);
   for (const std::uint32_t pixel : picture.plan.targets[0].seen) {
@@ -153,7 +153,7 @@ TEST(SightLimits, PartsAreThoseOfLargeTargets) {
 }
 
 TEST(SightLimits, JohnsonDecidesWhereContrastIsAmple) {
-  // Without noise the resels' Nyquist frequency limits: n = lines / 2.
+  // Without noise the Nyquist frequency of the resels is the limit: n = lines / 2.
   for (const double radius : {1.0, 4.0, 8.0}) {
     const Sight sight = sight_of(bright_disc(radius), plain_cctv(disc_edge, disc_edge, 100.0));
     EXPECT_EQ(*sight.signal->limiting_frequency, 0.5);
@@ -163,8 +163,8 @@ TEST(SightLimits, JohnsonDecidesWhereContrastIsAmple) {
   }
 }
 
-// The fields of a bar of `extent` resels that moves by `speed` a field through a tube that lags:
-// what the line holds of it where it stands, after long.
+// Simulates the fields of a bar of `extent` resels that moves by `speed` per field through a tube
+// with lag: the signal at the bar's position in the steady state.
 TEST(SightLimits, TrailIsThatOfALaggingTube) {
   constexpr int extent = 12, speed = 5, fields = 400, width = extent + speed * fields;
   constexpr double lag = 0.7;
@@ -186,8 +186,8 @@ TEST(SightLimits, TrailIsThatOfALaggingTube) {
   EXPECT_NEAR((Trail{lag, extent, 0.0}.share(extent)), 1.0 - lag, 1e-12);
 }
 
-// Half a period a field: the fields stand against each other, (1 - lag) / (1 + lag). Across the way
-// nothing is lost.
+// Half a period per field: successive fields have opposite phases, (1 - lag) / (1 + lag). Across
+// the motion nothing is lost.
 TEST(SightLimits, TrailTakesFineStructureAlongItsWayOnly) {
   const Trail trail{0.6, 2.0, 0.0};
   EXPECT_NEAR(trail.modulation(0.0, 0.25), 0.4 / 1.6, 1e-12);
@@ -209,9 +209,9 @@ TEST(SightLimits, BlackBackIsDoubtfulAtBest) {
   EXPECT_EQ(tests::sight_of(picture, {}).verdict, Verdict::Doubtful);
 }
 
-// The chain's own counts, taken from the signal, are those of the range carried back to the scene:
-// on a picture of one pixel per resel, pixel by pixel, with all off that is not the same everywhere
-// or that mixes them.
+// The chain's levels, counted in the signal, equal the counts by the range traced back to the
+// scene: pixel by pixel in a picture of one pixel per resel, without stages that mix pixels or vary
+// over the picture.
 TEST(SightLimits, ShownRangeAgreesWithTheChainsLevels) {
   constexpr int edge = 300;
   base::Image image = base::make_rgb_image(edge, edge);
@@ -247,8 +247,8 @@ TEST(SightLimits, ShownRangeAgreesWithTheChainsLevels) {
   }
 }
 
-// Of a disc of which a quarter is white and the rest black these are its pixels' shares, also where
-// the camera has a resel for four pixels: a pixel is judged by the resel in which its centre lies.
+// Shares of the pixels of a disc, a quarter white and the rest black, also if the camera has a
+// resel for four pixels: the resel at its centre decides about a pixel.
 TEST(SightLimits, ClippedSharesAreOfPixelsByTheReselOfTheirCentre) {
   constexpr int width = 180, height = 120;
   auto picture = discs_on(0.0, {{90.0, 60.0, 20.0, 0.0}}, width, height);

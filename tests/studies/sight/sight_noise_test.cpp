@@ -40,7 +40,7 @@ degrade::Setup small_monitor(const degrade::Preset& preset) {
   return setup;
 }
 
-// Three pixels on two resels: the middle one lies on both.
+// Three pixels on two resels: the middle one covers parts of both.
 TEST(SightNoise, PixelsCountInEachReselByTheirArea) {
   const WeightedResels middle = weigh({1}, 3, 1, 2, 1);
   ASSERT_EQ(middle.resel.size(), 2U);
@@ -49,11 +49,11 @@ TEST(SightNoise, PixelsCountInEachReselByTheirArea) {
   const WeightedResels left = weigh({0, 1}, 3, 1, 2, 1);
   EXPECT_NEAR(left.weight[0], 0.75, 1e-12);
   EXPECT_NEAR(left.area, 4.0 / 3.0, 1e-12);
-  EXPECT_NEAR(weigh({0}, 1, 1, 4, 3).area, 12.0, 1e-12);  // and the other way
+  EXPECT_NEAR(weigh({0}, 1, 1, 4, 3).area, 12.0, 1e-12);  // and the reverse
 }
 
-// Mean and variance of every resel, and the screen, as the twin of the whole picture has them.
-// Saturation moves the mean by less than the noise there, and all presets clip before.
+// Mean and variance of every resel, and the screen, as in the twin of the whole picture. Saturation
+// changes the mean by less than its noise, and all presets clip below it.
 TEST(SightNoise, EveryReselIsThatOfTheTwin) {
   const auto picture = busy_picture();
   for (const degrade::Preset& preset : degrade::presets()) {
@@ -75,7 +75,7 @@ TEST(SightNoise, EveryReselIsThatOfTheTwin) {
       ASSERT_NEAR(moments.variance_in_time[i], moments.variance[i], 1e-5 * variance + 1e-12);
       EXPECT_EQ(twin.saturated[i] > 0.0F, line.level[i] >= 0.995F);
     }
-    // A disc's light on the screen, spread and all.
+    // A disc's light on the screen, with spread.
     const SightTarget& target = picture.plan.targets[0];
     const WeightedResels disc = weigh(target.view.measured, side_px, side_px, side_px, side_px);
     const degrade::Plane viewed = luminance_plane(twin.viewed_mean);
@@ -96,8 +96,8 @@ TEST(SightNoise, EveryReselIsThatOfTheTwin) {
   }
 }
 
-// The twin's standard deviation of the difference of two boxes about one resel, found there from
-// the covariances of all pairs. Carried by slopes alone: within 1 % where clamps bend the noise.
+// The twin's standard deviation of the difference of two boxes around one resel, from the
+// covariances of all pairs. First-order noise only: within 1 % where clamps distort the noise.
 TEST(SightNoise, DifferenceOfMeansScattersAsInTheTwin) {
   const auto picture = busy_picture();
   for (const degrade::Preset& preset : degrade::presets()) {
@@ -127,7 +127,7 @@ TEST(SightNoise, DifferenceOfMeansScattersAsInTheTwin) {
 }
 
 // Flat field S = 0.5, linear camera: Var mean = sum over offsets of pairs(d) C(d) / N^2, with C of
-// degrade/parts/transfer_law.h, which shares no code with the chain; 20 resels off the border.
+// degrade/parts/transfer_law.h, which shares no code with the chain; 20 resels from the border.
 TEST(SightNoise, FlatFieldsHaveTheNoiseOfTheClosedForms) {
   const auto picture = tests::discs_on(50.0, {{48.0, 48.0, 12.0, 50.0}}, side_px, side_px);
   degrade::Setup setup = tests::plain_cctv(side_px, side_px, 100.0);
@@ -157,14 +157,14 @@ TEST(SightNoise, FlatFieldsHaveTheNoiseOfTheClosedForms) {
       }
     }
     const double count = static_cast<double>(seen.size());
-    // The law has the lag of one frame between the fields of a frame where they are not interlaced.
+    // Without interlace, the law has the lag of one frame between the fields of a frame.
     EXPECT_NEAR(mean_noise(line, moments, disc, disc, 1).variance_a, sum / (count * count),
                 1e-4 * sum / (count * count))
         << interlace;
   }
 }
 
-// What target and surround have in common leaves their difference.
+// Noise common to target and surround cancels in their difference.
 TEST(SightNoise, SharedNoiseLeavesTheDifference) {
   degrade::Setup setup = tests::with_noise(tests::plain_cctv(side_px, side_px, 100.0), 0.0, 0.01);
   setup.camera.blur_h = setup.camera.blur_v = 3.0;
@@ -192,9 +192,9 @@ TEST(SightNoise, FramesOfALaggingTubeAreAlike) {
   EXPECT_EQ(time_factors(0.4, false, 2).other, 0.0);
 }
 
-// Means over a disc and over its surround in 400 independent noisy frames of the tube, each with a
-// seed and so a fixed pattern of its own: mean within 4 s / sqrt(M), variance within
-// 4 sqrt(2 / (M - 1)) of itself.
+// Means over a disc and over its surround in 400 independent noisy frames of the tube, each with
+// its own seed and hence its own fixed pattern: mean within 4 s / sqrt(M), variance with a relative
+// error of 4 sqrt(2 / (M - 1)).
 TEST(SightNoise, NoisyFramesScatterAsForetold) {
   constexpr int frames = 400;
   const auto picture = busy_picture();

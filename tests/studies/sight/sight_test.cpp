@@ -56,7 +56,7 @@ TEST(Sight, PixelsAndLinesOfADisc) {
   EXPECT_NEAR(*sight_of(picture, {}).tv_lines, 40.0, 0.5);  // rows of the picture
 }
 
-// Without a filter noise is white, and all counts of looks are those of resels and frames.
+// Without filters noise is white, and samples are independent over resels and frames.
 TEST(Sight, NoiseFiguresOfADiscAreTheirClosedForms) {
   const double a = 4e-4, b = 3e-4, c = 5e-4;
   const auto picture = bright_disc();
@@ -229,9 +229,9 @@ TEST(Sight, PicturesOfAnotherSizeAreRefused) {
   EXPECT_THROW((void)measure_sight(picture.plan, base::make_rgb_image(8, 8), {}), base::Error);
 }
 
-// A standard error of the difference from the surround, 20 cd/m^2, of 5 and of none: by the eye and
-// by a CCTV the verdicts at the bounds are those of pictures whose difference is 1 -+ 1.96 / 4 times
-// as large; without an error both are the verdict itself.
+// Standard errors of 5 and of 0 for the difference from the surround, 20 cd/m^2. By eye and by
+// CCTV, the verdicts at the bounds equal the verdicts of pictures with the difference times
+// 1 -+ 1.96 / 4; without an error both equal the verdict itself.
 TEST(Sight, BoundsOfAVerdictAreVerdictsAtTheEndsOfTheDifferencesInterval) {
   const auto disc = [](double contrast) {
     return discs_on(40.0, {{60.0, 60.0, 3.0, 40.0 + 20.0 * contrast}}, disc_edge, disc_edge);

@@ -16,8 +16,8 @@ std::optional<TargetLight> light_of(const scenes::Scene& scene, const scenes::Ca
   return measure_light(views.front(), base::luminance_of(frame.image));
 }
 
-// Under one Sun the luminances are rho E / pi, so that C = rho_t / rho_b - 1, whatever part of a
-// pixel the plate's edge cuts off: 37 pixels on 1.7 m put it anywhere.
+// Under one Sun the luminances are rho E / pi, so that C = rho_t / rho_b - 1, wherever the plate's
+// edge divides a pixel: 37 pixels on 1.7 m put it anywhere.
 TEST(TargetLight, WeberContrastOfAPlateOnGroundIsExact) {
   for (const auto& [ground, plate] : {std::pair{0.4, 0.6}, {0.8, 0.2}, {0.5, 0.5}, {0.5, 0.0}}) {
     auto builder = tests::plate_on_ground(ground, plate);

@@ -34,9 +34,9 @@ TargetView only_target(const scenes::Scene& scene, const scenes::Camera& camera,
 }
 
 TEST(TargetView, SurroundIsAsLargeAsTheTargetAndOnePixelOff) {
-  // 10 x 10 seen; the pixel round it is left out (12 x 12); then by 4 neighbours 4 * 12 = 48, and
-  // by 8 neighbours from the cross of 14 x 12 and 12 x 14 (192) to that of 16 x 14 and 14 x 16
-  // (252): 60 more. 108 is nearer to 100 than 48.
+  // 10 x 10 seen. The pixel around it is excluded (12 x 12). Then 4 neighbours add 4 * 12 = 48, and
+  // 8 neighbours add 60: from the union of 14 x 12 and 12 x 14 (192) to the union of 16 x 14 and 14
+  // x 16 (252). 108 is closer to 100 than 48.
   const ObjectMap map = rectangle(40, 40, 15, 15, 10, 10);
   const TargetView view = find_target(map, marked);
   EXPECT_EQ(view.pixels, 100U);
@@ -63,7 +63,7 @@ TEST(TargetView, TargetThatFillsThePictureHasNoSurround) {
 
 TEST(TargetView, LuminanceIsTakenInsideTheOutline) {
   EXPECT_EQ(find_target(rectangle(40, 40, 15, 15, 10, 10), marked).measured.size(), 64U);
-  // A line has no inside: all of it is taken.
+  // A line has no interior: all of it is measured.
   EXPECT_EQ(find_target(rectangle(40, 40, 15, 5, 1, 30), marked).measured.size(), 30U);
   // 4 x 4 has a core of 4, just a quarter; 3 x 3 has one pixel of 9.
   EXPECT_EQ(find_target(rectangle(40, 40, 15, 15, 4, 4), marked).measured.size(), 4U);
@@ -77,7 +77,8 @@ TEST(TargetView, TargetThatIsNowhereIsNotInView) {
 }
 
 TEST(TargetView, TargetWhollyInViewIsSeenAsIfAlone) {
-  // 1 m of the 2 m in view: half of 32 pixels each way. A camera askew leaves no edge on the grid.
+  // 1 m of the 2 m in view: half of 32 pixels each way. An oblique camera leaves no edge on the
+  // grid.
   const auto builder = tests::plate_on_ground(0.4, 0.6);
   const TargetView view = only_target(builder.scene, tests::above(2.0, 2.0), 32);
   EXPECT_EQ(view.pixels, 256U);
@@ -93,7 +94,7 @@ TEST(TargetView, TargetWhollyInViewIsSeenAsIfAlone) {
 
 TEST(TargetView, HalfHiddenPlateIsHalfSeen) {
   // A screen at half the camera's height hides x < 0. Of the plate's 16.5 columns 16 or 17 have
-  // their centre on it; the screen's edge, a line of pixels, may go to either side: an error of at
+  // their centre on it; the screen's edge, a line of pixels, may be on either side: an error of at
   // most half a column for the edge and half for the rounding, 1 of 16.
   auto builder = tests::plate_on_ground(0.4, 0.6);
   builder.quad(1, {-3, -3, 1}, {0, -3, 1}, {0, 3, 1}, {-3, 3, 1});
@@ -154,11 +155,11 @@ TEST(TargetView, BlackBacksAreCountedWhereASurfaceHasOneSide) {
   EXPECT_EQ(seen_back(true, false, 0.0), 0.0);
   EXPECT_EQ(seen_back(false, false, 0.0), 1.0);
   EXPECT_EQ(seen_back(false, true, 0.0), 0.0);
-  EXPECT_EQ(seen_back(false, false, 0.1), 0.0);  // glass shows what is behind it
+  EXPECT_EQ(seen_back(false, false, 0.1), 0.0);  // glass shows the scene behind it
 }
 
-// 2 m across 32 pixels: 0.5 m/s are 8 pixels a second, up is against the rows. Along the camera's
-// axis the middle stands still.
+// 2 m across 32 pixels: 0.5 m/s are 8 pixels per second; up is opposite to the rows. Motion along
+// the camera's axis leaves the centre in place.
 TEST(TargetView, MotionIsThatOfTheMiddleAcrossThePicture) {
   const auto motion = [](const Vec3& velocity) {
     auto builder = tests::plate_on_ground(0.4, 0.6);

@@ -18,11 +18,10 @@ double share_from(const std::vector<LightShare>& shares, const std::string& from
   return found == shares.end() ? 0.0 : found->share;
 }
 
-// A unit cube of walls that all emit M and reflect rho = 0.5: B = M / (1 - rho) everywhere, of
-// which M is a point's own light, rho M comes straight from the walls and rho (B - M) by way of
-// them. From the middle of the floor
-// the ceiling fills F = 4 / (2 pi) 2 x / sqrt(1 + x^2) atan(x / sqrt(1 + x^2)), x = 1/2: 0.2394,
-// and each of the others a quarter of the rest.
+// A unit cube whose walls all emit M and reflect rho = 0.5: B = M / (1 - rho) everywhere. Of this,
+// M is a point's own light, rho M is light straight from the walls, and rho (B - M) is reflected by
+// them. From the centre of the floor the ceiling has F = 4 / (2 pi) 2 x / sqrt(1 + x^2)
+// atan(x / sqrt(1 + x^2)), x = 1/2: 0.2394, and each of the other walls a quarter of the rest.
 TEST(LastBounce, InAFurnaceSharesAreFormFactors) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5, 1.0));
@@ -46,8 +45,8 @@ TEST(LastBounce, InAFurnaceSharesAreFormFactors) {
               1e-3);
   const double x = 0.5, h = std::sqrt(1.0 + x * x);
   const double ceiling = 4.0 / (2.0 * base::pi) * 2.0 * x / h * std::atan(x / h);
-  // Of p with `rays` independent rays the standard error is sqrt(p (1 - p) / rays); an even
-  // sequence does better. Times the reflected quarter.
+  // A share p from `rays` independent rays has the standard error sqrt(p (1 - p) / rays); an even
+  // sequence has less. Times the reflected quarter.
   const auto within = [](double p) { return 0.25 * 4.0 * std::sqrt(p * (1.0 - p) / rays); };
   EXPECT_NEAR(share_from(shares, "quad-5", true), 0.25 * ceiling, within(ceiling));
   for (const char* wall : {"quad-0", "quad-1", "quad-2", "quad-3"}) {
@@ -61,7 +60,7 @@ TEST(LastBounce, InAFurnaceSharesAreFormFactors) {
                              [](const auto& a, const auto& b) { return a.share > b.share; }));
 }
 
-// Under the Sun alone on black ground there is nothing but the Sun.
+// Under the Sun on black ground there is only sunlight.
 TEST(LastBounce, WithNothingRoundItLightComesStraight) {
   auto builder = tests::plate_on_ground(0.0, 0.6);
   builder.scene.sun = tests::overhead_sun(1000.0);

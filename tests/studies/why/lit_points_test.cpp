@@ -14,12 +14,12 @@ namespace {
 constexpr int size = 32;
 constexpr double reflectance = 0.6;
 
-// A white plate on grey ground, seen from above and below the builder's further plates.
+// A white plate on grey ground, seen from above, below any further plates.
 struct Lit {
   tests::SceneBuilder builder = tests::plate_on_ground(0.4, reflectance);
   std::vector<SeenPoint> points;
 
-  // Looks once all plates are there.
+  // To be called when all plates are there.
   scenes::RayQuery look() {
     scenes::RayQuery query(builder.scene);
     const scenes::Camera camera = tests::above(2.0, 2.0);
@@ -28,7 +28,7 @@ struct Lit {
     points = seen_points(builder.scene, query, camera, size, size, view.measured);
     return query;
   }
-  // Shades the points with x < 0 (or x > 0) from above, out of the camera's sight.
+  // Shades the points with x < 0 (or x > 0) from above, out of the camera's view.
   void shade(bool left) {
     const double a = left ? -3.0 : 0.0, b = left ? 0.0 : 3.0;
     builder.quad(0, {a, -3, 9}, {b, -3, 9}, {b, 3, 9}, {a, 3, 9});
@@ -38,7 +38,7 @@ struct Lit {
 TEST(LitPoints, SeenPointsLieOnTheTargetTowardTheCamera) {
   Lit lit;
   (void)lit.look();
-  EXPECT_EQ(lit.points.size(), 196U);  // 14 x 14 of 16 x 16 pixels lie inside its outline
+  EXPECT_EQ(lit.points.size(), 196U);  // 14 x 14 of 16 x 16 pixels are inside its outline
   for (const SeenPoint& point : lit.points) {
     EXPECT_NEAR(point.position.z, 0.0, 1e-6);
     EXPECT_NEAR(point.normal.z, 1.0, 1e-9);
@@ -54,7 +54,7 @@ TEST(LitPoints, AreAtMostAsManyAsWantedAndSpreadEvenly) {
   for (std::uint32_t i = 0; i < size * size; ++i) pixels.push_back(i);
   const auto points = seen_points(builder.scene, query, camera, size, size, pixels, 100);
   ASSERT_EQ(points.size(), 100U);
-  EXPECT_LT(points.back().position.y, -0.9);  // the last rows are not left out
+  EXPECT_LT(points.back().position.y, -0.9);  // includes the last rows
 }
 
 TEST(LitPoints, HalfShadedPlateIsHalfLitBySunAndTheShadowHasAName) {
@@ -82,7 +82,7 @@ TEST(LitPoints, SourceBehindTheSurfaceFacesNothing) {
   EXPECT_EQ(sun.unshadowed, 0.0);
 }
 
-// A black back gives nothing, but what its front would: rho E / pi.
+// A black back reflects nothing; its front would reflect rho E / pi.
 TEST(LitPoints, BlackBackKnowsWhatItsFrontWouldGive) {
   Lit lit;
   for (const std::size_t k : {2U, 3U}) {
@@ -120,12 +120,12 @@ TEST(LitPoints, EmittingPlateReachesWhatItFaces) {
   const scenes::EmitterSet emitters(lit.builder.scene, panel);
   const Reach reach = reach_of_emitters(lit.builder.scene, query, lit.points, emitters, 16);
   EXPECT_EQ(share_of(reach.lit), 1.0);
-  // L = M / pi over 1 m^2 at 5 m: E = M / (25 pi) where it stands overhead, up to 4 % less askew.
+  // L = M / pi over 1 m^2 at 5 m: E = M / (25 pi) directly overhead, up to 4 % less at an angle.
   const double overhead = reflectance * 500.0 / (25.0 * base::pi * base::pi);
   EXPECT_NEAR(reach.luminance, overhead, 0.04 * overhead);
 }
 
-// A uniform disc of half angle alpha overhead: E = pi L sin^2 alpha. 256 even directions hold the
+// A uniform disc of half angle alpha overhead: E = pi L sin^2 alpha. 256 even directions have the
 // mean cosine within 1 %.
 TEST(LitPoints, EarthOverheadGivesTheIlluminanceOfItsDisc) {
   Lit lit;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Made-up situations: one target that is identified, and causes that are put in by hand.
+// Synthetic situations: one target that is identified, and causes that are added one by one.
 #pragma once
 
 #include <functional>
@@ -39,8 +39,8 @@ inline DiscPicture picture_of(const Situation& made, double light) {
   }
   if (made.sun_in_picture) {
     picture.camera.filter_width_px = 4.0;
-    // A disc of 0.27 degrees behind pixels of a third of a degree, through a filter that lets a
-    // hundredth of it reach the next pixel but one.
+    // A disc of 0.27 degrees behind pixels of a third of a degree, with a filter that carries a
+    // hundredth of it two pixels away.
     for (int y = 96; y < 104; ++y) {
       for (int x = 16; x < 24; ++x) {
         const double r = std::hypot(x - 19.5, y - 99.5);
@@ -103,9 +103,9 @@ inline studies::SourceOnTarget without_light(const std::string& group, const std
   return source;
 }
 
-// The twenty, each by hand.
+// The twenty causes.
 inline void put_hidden(Situation& s) {
-  // A disc of the ground's light leaves a sliver of the target.
+  // A disc as bright as the ground leaves a sliver of the target.
   const Disc& t = s.discs[0];
   s.discs.push_back({t.x + 1.5, t.y, t.radius + 1.0, s.ground, false});
   s.lit_discs = s.discs.size();

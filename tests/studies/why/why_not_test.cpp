@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ledger: in each picture one thing is wrong, and it must be named.
+// Each picture has one fault, which must be named.
 #include "studies/why/why_not.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ Told ask_why(const tests::DiscPicture& picture, const std::optional<degrade::Set
   return told;
 }
 
-// One reason, which alone would do.
+// One reason, which alone suffices.
 void expect_only(const Told& told, Cause cause, const std::string& by) {
   ASSERT_EQ(told.why.reasons.size(), 1U) << told.why.text;
   const Reason& reason = told.why.reasons.front();
@@ -47,7 +47,7 @@ TEST(WhyNot, NothingIsSaidOfATargetThatIsIdentified) {
 }
 
 TEST(WhyNot, NamesWhatStandsInFront) {
-  // Of a disc of 4 pixels across a sliver of 2 pixels looks out behind another, as dark as the
+  // A sliver of 2 pixels of a disc 4 pixels wide is visible behind another disc, as dark as the
   // ground: 0.8 cycles of 2.
   auto picture =
       discs_on(40.0, {{60.0, 60.0, 2.1, 80.0}, {61.0, 60.0, 2.3, 40.0, false}}, edge, edge);
@@ -79,7 +79,7 @@ TEST(WhyNot, SaysSoOutOfView) {
 }
 
 TEST(WhyNot, NamesTheSourceThatDoesNotReachIt) {
-  // As black as the ground, because the lamp's light does not come; the Sun stands behind it.
+  // As black as the ground, because the lamp's light is blocked; the Sun is behind it.
   SourceOnTarget sun{"sun"}, lamp{"bay-lamps"};
   lamp.facing = 1.0;
   lamp.unshadowed = 50.0;
@@ -101,7 +101,7 @@ TEST(WhyNot, LampThatIsOffLightsThePictureItIsGiven) {
   const Told told = ask_why(dark, plain_cctv(edge, edge, 100.0), {lamp});
   expect_only(told, Cause::Unlit, "bay-lamps");
   EXPECT_EQ(told.why.text, "unlit: bay-lamps switched off; with it 1.00");
-  // Without that picture, nor anything else to go by, the darkness is told all the same.
+  // Without that picture, nor any other data, the darkness is still reported.
   lamp.when_on = nullptr;
   const Told blind = ask_why(dark, plain_cctv(edge, edge, 100.0), {lamp});
   EXPECT_EQ(blind.why.text, "unlit: bay-lamps switched off");
@@ -115,8 +115,8 @@ degrade::Setup automatic(double noise) {
 }
 
 TEST(WhyNot, NamesTheBrightThingTheIrisClosesFor) {
-  // Disc 1 is bright too, but disc 2 brings the mean from 45 to 1e4 cd/m^2, 7.8 stops, and the
-  // target to S = 0.003, against noise of 0.03.
+  // Disc 1 is bright, too, but disc 2 raises the mean from 45 to 1e4 cd/m^2, 7.8 stops, and lowers
+  // the target to S = 0.003, with noise of 0.03.
   const auto picture = discs_on(40.0,
                                 {{40.0, 40.0, 8.0, 60.0},
                                  {90.0, 40.0, 10.0, 250.0, false},
@@ -145,7 +145,7 @@ TEST(WhyNot, NamesAllTheIrisClosesForWhereOneWouldNotDo) {
 
 TEST(WhyNot, NamesTheEarthThatTheIrisClosesFor) {
   auto picture = discs_on(40.0, {{30.0, 30.0, 8.0, 60.0}}, edge, edge);
-  // The camera looks along x; the Earth fills 10 degrees about that.
+  // The camera looks along x; the Earth fills 10 degrees around this direction.
   scenes::Earth earth;
   earth.direction = Vec3(1, 0, 0);
   earth.half_angle_deg = 5.0;
@@ -217,8 +217,8 @@ TEST(WhyNot, NeedsSeveralWhereNoOneIsEnough) {
 }
 
 TEST(WhyNot, WhatIsNotNeededIsNotAmongTheSeveral) {
-  // Large, 2.5 % of contrast against the eye's 6 %, in noise of 0.3: no single cause changes
-  // anything, and blur, which is tried first, is not to blame.
+  // Large, 2.5 % of contrast with an eye's threshold of 6 %, in noise of 0.3: no single cause
+  // changes anything, and blur, which is tried first, is no cause.
   const Told told = ask_why(discs_on(40.0, {{60.0, 60.0, 10.0, 41.0}}, edge, edge),
                             with_noise(plain_cctv(edge, edge, 100.0), 0.09));
   ASSERT_EQ(told.why.reasons.size(), 2U) << told.why.text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Twenty causes, each put in by hand: the ledger names it, and of two put in together both.
+// Twenty causes, each added alone: it must be named; of two added together, both.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ struct Case {
   const char* name;
   void (*put_in)(Situation&);
   const char* cause;
-  const char* text;  // part of the ledger's
+  const char* text;  // part of the reason's text
 };
 
 constexpr Case hidden{"hidden", put_hidden, "hidden", "hidden by pallet ("};
@@ -48,8 +48,8 @@ bool names(const WhyNot& why, const Case& wanted) {
                      [&](const Reason& r) { return word_of(r.cause) == wanted.cause; });
 }
 
-// A picture with a lamp on takes the place of the one that is there; what else is taken away must
-// change that one: 10, then 5 more.
+// A picture with a lamp on replaces the present one; other changes must apply to the new one: 10,
+// then 5 more.
 TEST(WhySituations, LightIsSwitchedOnBeforeWhatElseIsTakenAway) {
   Scenario start;
   start.radiance = base::make_rgb_image(1, 1);
@@ -80,7 +80,7 @@ TEST_P(OneCause, IsNamedFirst) {
   ASSERT_FALSE(told.why.reasons.empty());
   EXPECT_EQ(word_of(told.why.reasons.front().cause), GetParam().cause) << told.why.text;
   EXPECT_TRUE(names(told.why, GetParam())) << told.why.text;
-  // What the eye or the target's size would have to be is not said of what the picture lacks.
+  // If the picture has a fault, neither the eye nor the target's size is named.
   for (const Reason& reason : told.why.reasons) {
     if (told.why.reasons.front().cause >= Cause::Contrast) break;
     EXPECT_LT(reason.cause, Cause::Contrast) << told.why.text;
@@ -105,8 +105,8 @@ TEST_P(TwoCauses, AreBothNamed) {
   EXPECT_TRUE(names(told.why, other)) << told.why.text;
 }
 
-// Pairs of which neither hides the other by what it is: nothing else is said of a target out of
-// view, and what has no light on it is not saturated.
+// Pairs of causes that do not exclude each other: a target out of view has no other reason, and an
+// unlit one is not saturated.
 INSTANTIATE_TEST_SUITE_P(
     WhySituations, TwoCauses,
     testing::Values(Pair{hidden, lamp_off}, Pair{hidden, noise}, Pair{hidden, sun},
