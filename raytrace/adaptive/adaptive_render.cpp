@@ -50,15 +50,17 @@ class AdaptiveRender {
     sums_.emplace(window_of(options_), shared_.layers, shared_.splits_parts, noted_,
                   camera_.columns);
     covered_ = sample_initial();
-    if (allocator_.has_rounds() && !ends() && shared_.layers <= tuning::most_layers_for_eye) {
+    if (is_for_eye() && !ends()) {
       const double dimmest = tuning::dimmest_share * sums_->mean_luminance();
       shade(wanted_for_the_eye(*sums_, scatter_of_samples(*sums_, dimmest), dimmest));
     }
     shade_witnessed();
     covered_ = covered_ && !ends();
     reserve_s_ = denoising_s_;
-    for (std::uint32_t round = 1; allocator_.has_rounds() && !ends(); ++round) {
-      if (!sample_round(round)) break;
+    std::uint32_t round = 1;
+    while (allocator_.has_rounds() && !ends() && sample_round(round)) ++round;
+    for (std::uint32_t k = 0; is_for_eye() && k < tuning::speck_rounds && !ends(); ++k) {
+      if (!sample_specks(round + k)) break;
     }
     finish();
     return {std::move(*sums_), std::move(field_)};
@@ -109,19 +111,39 @@ class AdaptiveRender {
     const std::optional<SamplePlan> plan = allocator_.next(planner, so_far, affordable(so_far));
     if (!plan) return false;
     expected_ = done_ + std::max(plan->cost, done_ * (allocator_.growth() - 1.0));
+    sample(*plan, round);
+    return true;
+  }
+
+  // Whether pixels get samples that only the eye needs: not where the layers make them dear.
+  [[nodiscard]] bool is_for_eye() const {
+    return allocator_.has_rounds() && shared_.layers <= tuning::most_layers_for_eye;
+  }
+
+  // False: no pixel is visibly noisy.
+  bool sample_specks(std::uint32_t round) {
+    const SampleCosts each = sample_costs(field());
+    const double so_far = spent(*sums_, field(), each);
+    const double most = std::min(tuning::speck_cost * so_far, affordable(so_far));
+    const SamplePlan plan = SamplePlanner(*sums_, field(), each).plan_for_specks(most);
+    if (plan.cost <= 0.0) return false;
+    sample(plan, round);
+    return true;
+  }
+
+  void sample(const SamplePlan& plan, std::uint32_t round) {
     if (field_) {
       const auto start = Clock::now();
       for (std::size_t k = 0; k < gathered_kinds && !ends(); ++k) {
-        field_->cast(static_cast<Gathered>(k), plan->field[k], round, [this] { return ends(); });
+        field_->cast(static_cast<Gathered>(k), plan.field[k], round, [this] { return ends(); });
       }
-      add_progress(plan->field_cost);
+      add_progress(plan.field_cost);
       denoise(false);
       report_.gather_seconds += seconds_since(start);
     }
     reserve_s_ = 0.0;
-    shade(plan->camera);
+    shade(plan.camera);
     reserve_s_ = denoising_s_;
-    return true;
   }
 
   void finish() {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <iterator>
 
 #include "base/parallel.h"
@@ -234,15 +235,63 @@ SamplePlanner::Outcome SamplePlanner::outcome(std::span<const Gain> gains, doubl
   return {squared_error() + change.squared_error, change.cost};
 }
 
-SamplePlan SamplePlanner::plan(double wanted, double most_cost) {
-  find_gains();
-  const double now = squared_error();
+SamplePlan SamplePlanner::no_samples() const {
   SamplePlan plan;
-  plan.squared_error = now;
+  plan.squared_error = squared_error();
   for (std::size_t k = 0; k < gathered_kinds && field_ != nullptr; ++k) {
     plan.field[k].assign(field_->points().size(), 0U);
   }
   plan.camera = sums_.samples;
+  return plan;
+}
+
+SamplePlan SamplePlanner::plan_for_specks(double most_cost) const {
+  struct Speck {
+    std::size_t pixel;
+    double squared_error, visibility;  // of that, relative to the pixel's luminance, squared
+  };
+  std::vector<Speck> specks;
+  const double floor = tuning::dimmest_share * whole_.reference_luminance;
+  for (std::size_t p = 0; p < stated_.luminance.size() && floor > 0.0; ++p) {
+    if (stated_.shows[p] == Shows::Nothing) continue;
+    double square = 0.0;
+    for (const float part : stated_.squared[p]) square += double(part);
+    const double against = std::max(double(stated_.luminance[p]), floor);
+    const double visibility = square / (against * against);
+    if (visibility > tuning::visible_deviation * tuning::visible_deviation) {
+      specks.push_back({p, square, visibility});
+    }
+  }
+  std::ranges::stable_sort(specks, std::greater(), &Speck::visibility);
+  SamplePlan plan = no_samples();
+  for (const Speck& speck : specks) {
+    if (plan.cost > most_cost) break;
+    for (std::size_t k = 0; k < gathered_kinds && field_ != nullptr; ++k) {
+      const auto kind = static_cast<Gathered>(k);
+      if (double(stated_.squared[speck.pixel][k]) < speck.squared_error / 8.0) continue;
+      for (const FieldTerm& term : sums_.terms[speck.pixel]) {
+        std::uint32_t& more = plan.field[k][term.point];
+        if (more > 0 || field_->reflected(kind, term.point) <= 0.0) continue;
+        more = 4U * std::max(GatherField::fewest_samples(kind),
+                             static_cast<std::uint32_t>(field_->samples(kind, term.point)));
+        plan.field_cost += costs_.field[k] * more;
+        plan.cost += costs_.field[k] * more;
+      }
+    }
+    const double camera =
+        stated_.squared[speck.pixel][static_cast<std::size_t>(ErrorPart::Camera)];
+    if (camera < speck.squared_error / 8.0) continue;
+    plan.camera[speck.pixel] *= 4U;
+    plan.cost += 3.0 * (costs_.camera * sums_.samples[speck.pixel] +
+                        costs_.camera_ray * double(sums_.rays[speck.pixel]));
+  }
+  return plan;
+}
+
+SamplePlan SamplePlanner::plan(double wanted, double most_cost) {
+  find_gains();
+  const double now = squared_error();
+  SamplePlan plan = no_samples();
   // Bisection for the price of a ray at which the picture is just accurate enough. A lower price
   // gives more samples.
   const std::span<const Gain> gains(gains_.get(), gain_count_);

@@ -48,6 +48,9 @@ class SamplePlanner {
   // The cheapest plan that is expected to reduce the squared error to `wanted`, at most_cost or
   // less.
   [[nodiscard]] SamplePlan plan(double wanted, double most_cost);
+  // Four times the samples for the pixels whose stated deviation is visible (tuning.h), the worst
+  // first, at most_cost or less: single specks that hardly count in the error of the picture.
+  [[nodiscard]] SamplePlan plan_for_specks(double most_cost) const;
 
  private:
   // Gain of one point or pixel; no cost if more samples do not help. Members have no initial
@@ -67,6 +70,7 @@ class SamplePlanner {
       return per_cost <= price_of_four ? 4 : per_cost <= price_of_two ? 2 : 1;
     }
   };
+  [[nodiscard]] SamplePlan no_samples() const;
   // Computes the gains once a plan is needed; a picture that is accurate enough needs none.
   void find_gains();
   // Appends the gains of [0, count): fill(begin, end, gains) computes a part.
