@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t grid = 24;  // rays per side
 constexpr int most_panes_passed = 8;
 constexpr double near_share = 0.9;  // of the rays
-// A picture that is all of one surface, nearer than that share of the distance looked to.
+// Share of the distance to the target below which a surface that fills the picture is too near.
 constexpr double near_of_way = 0.05;
 constexpr double most_backs = 0.5;
 // A bay of 15 m read in mm measures 15 mm; the smallest space with a camera measures decimetres.
@@ -82,7 +82,7 @@ double share(std::size_t part, std::size_t all) {
   return static_cast<double>(part) / static_cast<double>(all);
 }
 
-// From this length on, metres with this number of decimals.
+// Lengths below 1 m in mm, others in m.
 std::string length_text(double metres) {
   if (metres < 1.0) return fmt::format("{:.2g} mm", 1000.0 * metres);
   return fmt::format("{:.3g} m", metres);

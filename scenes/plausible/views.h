@@ -12,7 +12,7 @@
 
 namespace earthshine::scenes {
 
-// Where a ray starts that goes on from a hit: off the surface, on the side of its direction.
+// Start of a ray that continues from a hit: off the surface, on the side of its direction.
 [[nodiscard]] Vec3 leave_toward(const Scene& scene, const RayQuery& query, const Hit& hit,
                                 const Vec3& direction);
 
