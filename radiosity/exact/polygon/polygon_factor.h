@@ -46,7 +46,7 @@ struct Segment {
 // and shared corners:
 //   parallel, offset c:  second differences of
 //                        G(u) = (u^2-c^2)/4 ln(u^2+c^2) + c u atan(u/c) - 3u^2/4
-//   intersecting lines:  ln r is homogeneous except for an added constant; by the divergence theorem
+//   intersecting lines:  ln r is homogeneous except for a constant; by the divergence theorem
 //                        2 I = (integral over the border of the parameters) - |e| |f|
 // For skew lines one integral is in closed form, the other by Gauss rules on intervals that become
 // smaller toward the closest approach; error below about 1e-9 |e| |f|.
