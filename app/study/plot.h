@@ -12,8 +12,8 @@ namespace earthshine::app {
 // Name of its package, for messages.
 inline constexpr const char* plot_package = "gnuplot-nox";
 
-// Any text as a gnuplot string that stands for itself: in single quotes, within which gnuplot
-// neither looks for escapes nor runs commands, without control characters or broken UTF-8.
+// Any text as a literal gnuplot string: in single quotes, inside which gnuplot processes neither
+// escapes nor commands, without control characters or invalid UTF-8.
 [[nodiscard]] std::string plot_text(std::string_view text);
 
 // A point of a plot; no error bar if low = high.

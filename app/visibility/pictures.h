@@ -35,8 +35,8 @@ struct PictureTask {
 void draw_pictures(const PictureTask& task, const studies::BasisView* view,
                    std::vector<FigureEntry>& figures);
 
-// Writes the PNGs of the clean pictures among a study's figures, of their EXR files: each by its own
-// white, and again by one white for all; or, where `tone` has one, only by that. Fills the whites.
+// Writes the PNGs of a study's clean pictures from their EXR files: with their own white, and again
+// with a common white; if `tone` sets a white, only with that. Sets the whites.
 void expose_figures(const std::filesystem::path& folder, const ToneChoice& tone,
                     std::vector<FigureEntry>& figures);
 
