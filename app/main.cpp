@@ -157,7 +157,7 @@ int run(std::vector<std::string> arguments, const Workers& workers) {
   const base::ThreadLimit limit(common.threads);
   const base::MemoryLimit memory(common.max_memory_bytes, workers.processes);
   const base::RanksInForce in_force(ranks);
-  // No rank may allocate memory before another one has measured the free memory.
+  // A barrier too: no rank allocates memory before all have measured the free memory.
   check_ranks_alike(Json::object({{"the call", part_free(common.arguments)}}));
   for (const Command& command : commands) {
     if (command.parser->parsed() && command.run) command.run(common);
@@ -210,8 +210,8 @@ int complain(std::string_view what, int exit_code) {
   return exit_code;
 }
 
-// Errors of the call are found by all ranks: the first one reports and ends the others, which wait
-// until then. Errors of one rank are reported by that rank.
+// Time that other ranks wait after an error. All ranks find errors of the call: the first one
+// reports them and ends the others meanwhile. Errors of one rank are reported by that rank.
 constexpr std::chrono::seconds time_to_speak{3};
 
 void end_rank(base::Ranks& ranks, int exit_code, const std::string& what) {

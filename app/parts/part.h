@@ -24,7 +24,7 @@ struct PartCall {
   Task task = Task::All;
   std::size_t number = 0, count = 0;  // of a share, from 1
   double wait_s = 0.0;                // of a share: time to wait for another process's solution
-  bool begins = false;                // of a solve: ignores an earlier call in the same folder
+  bool begins = false;                // of a solve: replaces an earlier call in the same folder
 
   [[nodiscard]] bool in_parts() const { return task != Task::All; }
 };

@@ -86,7 +86,7 @@ struct Shares {
 // Follows a ray from a source, reverse to shadow rays: straight through glass, and by one
 // reflection in a flat mirror. A ray at a second mirror, inside a glass body, or where faces cover
 // a patch counts as absorbed by a black back, because it lights no patch. `weight`: the ray's flux
-// per channel, for a multicoloured source that of the mean colour.
+// per channel; a multicoloured source uses its mean colour.
 class SourceRays {
  public:
   SourceRays(const scenes::Scene& scene, const scenes::RayQuery& query, const Patches& patches,

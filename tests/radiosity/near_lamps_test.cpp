@@ -113,8 +113,8 @@ TEST(NearLamps, OnlyWhatTheyShineAtIsCut) {
   EXPECT_EQ(cut(floor_under_lamp(1e-3, scenes::LampKind::Spot)).count(), even);  // directed away
 }
 
-// Near a lamp of radius 0.2 m the light varies no faster than over its size: no patch is longer than
-// 0.05 m, and none so short is halved.
+// Near a lamp of radius 0.2 m the light varies no faster than over its size: no patch is longer
+// than 0.05 m, and none so short is halved.
 TEST(NearLamps, NothingIsCutForLessThanTheSizeOfTheLamp) {
   scenes::Scene scene = floor_under_lamp(1e-3, scenes::LampKind::Disk);
   scene.lamps[0].radius_m = 0.2;
