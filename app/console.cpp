@@ -35,8 +35,8 @@ void remember(int signal) {
   std::signal(signal, at_once);
 }
 
-// Without SA_RESTART, so that blocking writes are interrupted too. Respects signals that the parent
-// process ignores, as nohup does.
+// Without SA_RESTART, so that blocking writes are interrupted too. Signals that the parent ignores
+// stay ignored, as with nohup.
 void (*take_over(int signal))(int) {
   struct sigaction ours {};
   struct sigaction before {};

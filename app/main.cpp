@@ -200,7 +200,7 @@ void take_signals() {
   std::signal(SIGXFSZ, SIG_IGN);  // and so is a file beyond `ulimit -f`
   std::set_terminate(end_by_exception);
   for (const int signal : ending_signals) {
-    // Respects signals that the parent process ignores, as nohup does.
+    // Signals that the parent ignores stay ignored, as with nohup.
     if (std::signal(signal, end_by_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
 }

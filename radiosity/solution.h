@@ -31,8 +31,7 @@ struct RefineOptions {
 struct SolveOptions {
   double patch_edge_m = 0.25;
   int form_factor_rays = 1024;  // per patch
-  double tolerance = 1e-8;      // of B, relative to the maximum of each right-hand side
-                                // (linear_solve.h)
+  double tolerance = 1e-8;      // of B, relative to its maximum (linear_solve.h)
   std::uint64_t seed = 1;
   RefineOptions refine = {};
   // Upper limits for direct light (DirectOptions): rays from each lamp, points on each patch.

@@ -33,8 +33,7 @@ using EmbreeContext = RTCIntersectContext;
 // Context of shadow rays: surfaces in `specular_paths` do not stop them but are reported.
 struct ShadowContext : EmbreeContext {
   const SpecularPaths* specular_paths = nullptr;  // null: all surfaces stop rays
-  std::uint32_t met = 0;                          // bit k: ray k hit a surface that does not stop
-                                                  // it
+  std::uint32_t met = 0;                          // bit k: ray k hit one of these
 };
 
 struct RayQuery::Embree {

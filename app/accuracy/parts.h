@@ -48,7 +48,7 @@ class AccuracyParts {
   [[nodiscard]] bool is_stored(const Json& cache_key) const;
   [[nodiscard]] std::optional<CachedResult> stored(const Json& cache_key);
   [[noreturn]] void end_early() const;
-  // Before work that is not stored: throws base::Error (Work) if none may be done.
+  // Call before work without a stored result: throws base::Error (Work) if no work may be done.
   void see_that_work_is_wanted() const;
 
   const AccuracyTask& task_;

@@ -119,8 +119,7 @@ void write_pictures(const std::filesystem::path& folder, const studies::Comparis
 void run(const CompareCall& call, const Common& common) {
   LoadedScene loaded = load(call.scene, common.quiet);
   const scenes::Camera& camera = camera_of(call, loaded.scene, common.quiet);
-  (void)raytrace::earth_area(loaded.scene, call.area);  // reports an invalid area before the folder
-                                                        // is made
+  (void)raytrace::earth_area(loaded.scene, call.area);  // reports errors before the folder is made
   prepare_folder(call.folder, file_names(call.lights, call.area), loaded.scene.files);
 
   studies::CompareOptions options;

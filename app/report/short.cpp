@@ -14,8 +14,7 @@ namespace {
 
 struct Tally {
   std::size_t camera = 0, seen = 0, all = 0;
-  std::map<std::string, std::size_t> hindrances;  // number of conditions for which each is the
-                                                  // first one
+  std::map<std::string, std::size_t> hindrances;  // how often each is the first one
 };
 
 std::string hindrance_of(const ResultEntry& result) {

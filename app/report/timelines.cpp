@@ -46,7 +46,7 @@ std::string runs(const Timeline& line, Holds holds) {
   return text;
 }
 
-// For a target without any probability.
+// Text for a target without a probability at any position.
 std::string unseen_text(const Timeline& line) {
   const auto where = [&](studies::Verdict verdict) {
     return runs(line, [&](std::size_t k) { return line.verdict[k] == verdict; });

@@ -39,8 +39,7 @@ struct FactorsCall {
   bool json = false, csv = false;
 };
 
-constexpr std::size_t widest_table = 10;  // objects; larger tables list only the largest entries of
-                                          // each row
+constexpr std::size_t widest_table = 10;  // objects; larger tables list the largest entries only
 constexpr std::size_t largest_listed = 6;
 
 struct Found {

@@ -27,8 +27,7 @@ struct InspectCall {
 
 Json objects_of(const scenes::Scene& scene) {
   Json objects = Json::array();
-  std::vector<std::set<std::uint32_t>> on_others(scene.objects.size());  // triangles of coincident
-                                                                         // faces
+  std::vector<std::set<std::uint32_t>> on_others(scene.objects.size());  // coincident triangles
   for (const scenes::FacePair& pair : scene.coincident) {
     for (const std::uint32_t t : {pair.a, pair.b}) {
       on_others[scene.triangles[t].object].insert(t);

@@ -35,8 +35,7 @@ struct StudyPart {
   std::vector<double> positions_deg;  // empty: the scene's own position
   // Time of each position since orbit noon; along time, since the first time.
   std::vector<double> times_s;
-  std::vector<scenes::Instant> moments;  // along time; else empty. positions_deg then increase
-                                         // beyond 360
+  std::vector<scenes::Instant> moments;  // along time, positions_deg exceed 360; else empty
   std::unique_ptr<const studies::LightBasis> basis;
   LoadedScene basis_scene;  // of the basis, with its groups and effects
   std::unique_ptr<const scenes::RayQuery> query;

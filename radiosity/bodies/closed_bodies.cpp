@@ -19,8 +19,7 @@ constexpr std::uint32_t none = 0xFFFFFFFFU;
 constexpr std::uint32_t first_hole = 0x80000000U;   // from here on: masked triangles
 constexpr std::uint32_t first_front = 0xA0000000U;  // } triangles covered by others
 constexpr std::uint32_t first_back = 0xC0000000U;   // }
-constexpr std::uint32_t outside = none;             // represents a body: everything outside all
-                                                    // rooms
+constexpr std::uint32_t outside = none;             // pseudo-body: all outside rooms
 
 // Whether the half-line from p along +x crosses the edge: +1 upward, -1 downward. The reversed edge
 // gives exactly the opposite number.
@@ -224,8 +223,7 @@ bool ClosedBodies::in_hole(const Vec3& point, std::uint32_t number) const {
   const auto& [a, b, c] = masked_[number];
   const auto [u, v] = scenes::barycentric(point, a, b - a, c - a);
   constexpr double rounding = 1e-5;
-  if (u < -rounding || v < -rounding || u + v > 1.0 + rounding) return false;  // outside this
-                                                                               // triangle
+  if (u < -rounding || v < -rounding || u + v > 1.0 + rounding) return false;  // other half
   return masks_.has_hole(number, u, v);
 }
 

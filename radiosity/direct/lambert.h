@@ -44,7 +44,7 @@ namespace earthshine::radiosity {
 // Collects edges for one point and evaluates several at a time.
 class LambertSum {
  public:
-  // normal: the receiver's, unit.
+  // normal: unit normal of the receiver.
   explicit LambertSum(const Vec3& normal) : normal_(normal) {}
 
   // Adds an edge from a to b, both relative to the point.

@@ -19,11 +19,9 @@ namespace earthshine::radiosity {
 
 struct PatchCover {
   std::vector<std::uint32_t> near;   // possible covers; empty: none
-  std::vector<ConvexPolygon> parts;  // open parts, relative to FacetSides::origin; empty: all or
-                                     // none of the patch is open
+  std::vector<ConvexPolygon> parts;  // relative to FacetSides::origin; empty: all or none is open
   double open = 1.0;                 // share of the patch's area
-  double std_error = 0.0;            // of `open`: half of the area of parts whose test points
-                                     // disagree
+  double std_error = 0.0;            // half the area of parts with contradictory points
 
   [[nodiscard]] bool is_whole() const { return open == 1.0; }
 };

@@ -14,8 +14,8 @@ constexpr int plain_sweeps = 4;
 
 // Termination criteria.
 struct Patience {
-  int passes_a_step;  // of conjugate gradients; if a scaling exists, about ten reduce the defect to
-                      // a tenth
+  // Of conjugate gradients: if a scaling exists, about ten passes reduce the defect to a tenth.
+  int passes_a_step;
   double least_gain;  // a step that leaves a larger share of the defect is the last one
 };
 // The hits as cast may have no scaling: then the defect stagnates, or decreases by about e per step

@@ -128,8 +128,7 @@ class ColumnSums {
   // Every band stores a sum per column: with short rows, bands need more memory than entries.
   std::size_t bands_ = std::clamp<std::size_t>(std::size_t(f_.rays_per_patch) / 4, 8, 16);
   std::size_t first_ = 0, last_ = 0;         // bands with rows here: [first_, last_)
-  bool is_begun_ = false, goes_on_ = false;  // the first band begins, the last one continues on
-                                             // another rank
+  bool is_begun_ = false, goes_on_ = false;  // another rank begins the first, ends the last band
   std::vector<double> partial_;              // of each band
 };
 

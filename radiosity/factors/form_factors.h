@@ -27,8 +27,7 @@ namespace earthshine::radiosity {
 struct FormFactorOptions {
   int rays_per_patch = 1024;  // rounded up to a power of two, 8 or more
   std::uint64_t seed = 1;
-  std::uint32_t replicate = 0;  // each number gives an independent set of samples with the same
-                                // seed
+  std::uint32_t replicate = 0;  // each number gives an independent set of samples
   // Points of a patch inside a body (closed_bodies.h) cast no rays: the row is the mean over the
   // open points, whose share is FormFactors::open. false: they count like other points.
   bool leave_out_covered = false;
@@ -40,15 +39,13 @@ struct FormFactorOptions {
 struct FormFactors {
   int rays_per_patch = 0;                // minimum over patches
   std::uint64_t ray_count = 0;           // all rays, including continuations
-  base::Shares shares;                   // which rank has the entries of which rows; all ranks have
-                                         // all other data
+  base::Shares shares;                   // which rank has which rows of entries; all else is on all
   std::vector<std::uint64_t> row_start;  // count + 1; rows of other ranks are empty
   std::vector<std::uint32_t> column;     // ascending within a row
   std::vector<float> hits;               // integers except for mirrors and glass
   std::vector<double> row_scale, column_scale;
   std::vector<double> sky, black;    // F_i,sky and F_i,black: shares of patch i's view
-  std::vector<double> escape, lost;  // shares of the light leaving j that reach the sky, black
-                                     // backs
+  std::vector<double> escape, lost;  // shares of j's light to the sky, to black backs
   std::vector<double> kept;          // a_j per patch
   std::vector<Rgb> kept_direct;  // share of direct light that ends on a patch
                                  // (scenes/specular_paths.h); empty: all

@@ -61,7 +61,7 @@ inline constexpr std::size_t patches_known_by = 64;
 // Total extra rays: at most those of a quarter of the scene's patches, or of 2048 patches,
 // whichever is more. With many small objects, all get fewer.
 inline constexpr std::size_t most_extra_share = 4, most_extra_runs = 2048;
-// No row is longer for it.
+// Limit per row.
 inline constexpr std::uint32_t most_rays_of_a_row = std::uint32_t{1} << 20;
 
 // Per object of the scene: number of runs of rays_per_patch rays for each of its patches, a power

@@ -254,8 +254,7 @@ ObjectFormFactors object_form_factors_by_rays(const scenes::Scene& scene,
   report.replicates = static_cast<int>(replicates);
   std::vector<double> rays_per_m2(objects, 0.0);
   for (std::size_t k = 0; k < objects; ++k) {
-    if (areas.open[k] < 1e-12 * areas.all[k]) areas.open[k] = 0.0;  // completely covered, to
-                                                                    // rounding
+    if (areas.open[k] < 1e-12 * areas.all[k]) areas.open[k] = 0.0;  // covered, to rounding
   }
   for (std::uint32_t i = 0; i < patches.count(); ++i) {
     rays_per_m2[patches.object(i)] += report.rays_per_patch;

@@ -33,8 +33,7 @@ struct ClusterMembers {
   std::vector<std::uint8_t> apex;                    // per member, as used by facet()
   std::vector<std::uint32_t> triangle;               // index in the scene, per member
   std::vector<std::uint32_t> of_triangle;            // per triangle of the scene; no_member: none
-  std::vector<double> area_to;                       // cumulative area before each member, and the
-                                                     // total
+  std::vector<double> area_to;                       // area before each member, and in total
 
   // The triangle as a facet with one cell.
   [[nodiscard]] Facet facet(std::uint32_t member) const;

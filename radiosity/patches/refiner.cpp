@@ -8,8 +8,7 @@ namespace earthshine::radiosity {
 namespace {
 
 constexpr double thinnest = 4.0;          // a cell longer than this times its width is halved
-constexpr double kept_by_halves = 0.5;    // of a patch's error: a shadow's edge crosses one of the
-                                          // two halves
+constexpr double kept_by_halves = 0.5;    // of the error: a shadow's edge crosses one half
 constexpr double undirected_share = 0.1;  // of the error, added to the longer side
 
 struct CutCandidate {

@@ -29,8 +29,7 @@ class Refiner {
 
   struct Budget {
     double enough = 0.0;           // squared error at which refinement ends
-    double share = 1.0;            // share of the squared error in the patches that are divided
-                                   // together
+    double share = 1.0;            // of the squared error, in the patches of one round
     std::size_t most_patches = 0;  // after dividing
   };
   // The most urgent patches by error per added patch, graded (split.h). Selects as many as have the

@@ -22,8 +22,7 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr double parallel_sine = 1e-3;  // preliminary test; heights decide
-constexpr double tie_share = 0.02;      // share of the contact distance: the rounding of a file in
-                                        // single precision
+constexpr double tie_share = 0.02;      // of the contact distance: rounding in the file
 // Rays with a larger offset than coarse_m may miss a gap. Below narrow_gap offsets a gap is too
 // narrow: at least 5 % of its height is skipped.
 constexpr double coarse_m = 1e-5, narrow_gap = 20.0;

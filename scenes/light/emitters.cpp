@@ -15,8 +15,7 @@ namespace {
 
 using base::pi;
 
-constexpr double near_sizes = 3.0;  // samples the solid angle within this multiple of the longest
-                                    // edge
+constexpr double near_sizes = 3.0;  // solid-angle sampling up to this times the longest edge
 
 bool is_rectangle(const FlatEmitter& emitter) {
   return emitter.shape == FlatShape::Parallelogram &&
@@ -89,8 +88,7 @@ LightSample sample_flat(const FlatEmitter& emitter, const Vec3& point, double u,
   const Vec3 way = emitter.corner - point;
   const double longest2 =
       std::max(glm::dot(emitter.edge1, emitter.edge1), glm::dot(emitter.edge2, emitter.edge2));
-  const double height = -glm::dot(way, emitter.normal);  // height of the point over the emitter's
-                                                         // front
+  const double height = -glm::dot(way, emitter.normal);  // of the point over the front
   const bool is_near = glm::dot(way, way) < near_sizes * near_sizes * longest2;
   // In its own plane the emitter is invisible, and the solid-angle formulas break down.
   const bool beside = std::abs(height) < 1e-7 * std::sqrt(longest2);

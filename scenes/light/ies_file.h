@@ -18,8 +18,7 @@ namespace earthshine::scenes {
 // Change of the lamp's output when its luminaire is tilted from the position of its measurement.
 struct TiltTable {
   std::vector<double> angle_deg, factor;
-  [[nodiscard]] double factor_at(double tilt_deg) const;  // linear interpolation; constant beyond
-                                                          // the ends
+  [[nodiscard]] double factor_at(double tilt_deg) const;  // interpolates; constant beyond the ends
 };
 
 struct Luminaire {

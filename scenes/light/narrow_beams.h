@@ -14,8 +14,7 @@ struct Beam {
   struct Ray {
     Vec3 direction;
     double share;           // of the lamp's flux
-    double solid_angle_sr;  // solid angle that the ray represents, from the distances of its
-                            // neighbours
+    double solid_angle_sr;  // represented by the ray, from its neighbours
   };
   Vec3 origin{0.0}, axis{0.0};
   double half_angle_rad = 0.0;  // about the axis, of all rays

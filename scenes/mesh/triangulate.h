@@ -19,8 +19,7 @@ enum class PolygonKind { Sound, Degenerate, Crossing };
 struct Triangulation {
   PolygonKind kind = PolygonKind::Degenerate;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  double area = 0.0;           // length of the vector area (Newell): projected area along the
-                               // normal
+  double area = 0.0;           // of the polygon's projection along the normal
   double triangle_area = 0.0;  // sum over the triangles; larger if the polygon is not flat
 };
 

@@ -17,8 +17,7 @@ struct SceneUse {
   bool lights = true;                  // false: the call does not use its light
   bool cameras_used = true;            // false: the call uses no view
   bool moves_along_orbit = false;      // Sun and Earth move
-  bool shows_facts = false;            // the output lists which lights shine: warnings need not
-                                       // repeat it
+  bool shows_facts = false;            // the output lists which lights shine
 };
 
 // One line each, with a remedy; docs/scene-format.md lists them under "Warnings about likely

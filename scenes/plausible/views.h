@@ -23,8 +23,7 @@ struct View {
   std::vector<std::size_t> hits_of, backs_of;  // by object
   // By object: number of backs toward the middle of its box minus number away from it.
   std::vector<std::ptrdiff_t> inner_backs_of;
-  double farthest_near_m = 0.0;  // distance within which nine of ten rays end; infinite if fewer
-                                 // end
+  double farthest_near_m = 0.0;  // nine of ten rays end within this; else infinite
   Box seen;                      // where they end
 
   [[nodiscard]] bool is_blocked() const;  // by a surface right before the lens

@@ -277,8 +277,7 @@ class Placer {
   std::vector<std::uint32_t> placed_at_;                          // scene vertex per mesh vertex
   std::unordered_map<std::uint64_t, std::uint32_t> textured_at_;  // by (vertex, uv)
   std::size_t without_uv_ = 0;                                    // textured corners
-  std::size_t first_without_uv_ = 0;                              // polygon of the first such
-                                                                  // corner
+  std::size_t first_without_uv_ = 0;                              // polygon of the first one
   double smallest_area_ = 0.0;
   std::uint32_t next_polygon_ = 0;
   std::size_t first_degenerate_ = 0;

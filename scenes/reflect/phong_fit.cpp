@@ -86,8 +86,7 @@ double slope_of(const Shares& shares, const Curve& curve, double angle_deg) {
 
 struct ReportFit {
   PhongFit fit;
-  std::vector<std::array<double, 3>> slopes;  // derivatives of k_d, k_s, n by each point's
-                                              // reflectance
+  std::vector<std::array<double, 3>> slopes;  // derivatives of k_d, k_s, n by each point's value
 };
 
 bool shows_lobe(const PhongFit& fit, const ReflectancePoint& p) {

@@ -65,8 +65,7 @@ struct ShadowSpan {
   double begin_s = 0.0, end_s = 0.0;
 };
 struct Eclipse {
-  std::optional<ShadowSpan> penumbra;  // the Earth hides part of the Sun's disc: visible_sun_share
-                                       // < 1
+  std::optional<ShadowSpan> penumbra;  // part of the Sun is hidden: visible_sun_share < 1
   std::optional<ShadowSpan> umbra;     // the Earth hides all of it; within the penumbra
 };
 

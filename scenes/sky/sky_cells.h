@@ -44,8 +44,7 @@ class SkyCells {
   Vec3 axis_;
   base::Frame3 frame_;
   std::vector<double> bounds_rad_, least_cosine_;  // of each ring
-  std::vector<std::size_t> sectors_, first_;       // first cell of each ring, then the number of
-                                                   // cells
+  std::vector<std::size_t> sectors_, first_;       // first cell of each ring, and the end
 };
 
 // About `wanted` cells (2 or more) of the Earth's disc of half angle half_angle_rad around
@@ -62,8 +61,7 @@ class SkyCells {
 // studies use it instead of the Sun and the Earth.
 
 struct SkyParts {
-  std::vector<Sun> suns;          // complete discs, not hidden by the Earth; groups "sun-0",
-                                  // "sun-1", ...
+  std::vector<Sun> suns;          // not hidden by the Earth; groups "sun-0", "sun-1", ...
   std::optional<SkyCells> cells;  // of Scene::earth, uniform; groups "earth-0", ...
 };
 

@@ -68,8 +68,7 @@ class TableReader {
   [[nodiscard]] std::optional<double> number(std::string_view key, Range range = any_number) const;
   [[nodiscard]] std::optional<int> whole(std::string_view key, int low, int high) const;
   [[nodiscard]] std::optional<std::string> text(std::string_view key) const;  // not empty
-  [[nodiscard]] std::optional<std::string> name(std::string_view key) const;  // also limited in
-                                                                              // length
+  [[nodiscard]] std::optional<std::string> name(std::string_view key) const;  // limited length
   [[nodiscard]] std::optional<std::string> choice(std::string_view key, KeyList choices) const;
   // A number (grey) or [r, g, b].
   [[nodiscard]] std::optional<Rgb> colour(std::string_view key, Range range = light_strength) const;

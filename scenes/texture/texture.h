@@ -47,8 +47,7 @@ class Texture {
 
   TextureReading reading_;
   int width_, height_;
-  std::vector<std::uint16_t> texels_;  // 4 per texel, 65535 represents 1: resolves sRGB's darkest
-                                       // step
+  std::vector<std::uint16_t> texels_;  // 4 per texel, 65535 is 1: resolves sRGB's darkest step
   glm::dvec4 mean_{0.0};
   std::uint64_t digest_ = 0;
 };

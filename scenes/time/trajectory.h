@@ -20,8 +20,7 @@ struct TrajectorySegment {
   Instant first_useful, last_useful;  // valid interval
   Interpolation interpolation = Interpolation::Hermite;
   int degree = 7;
-  std::optional<Instant> frame_epoch;  // for TEME and TOD: epoch of the frame; none: each state's
-                                       // time
+  std::optional<Instant> frame_epoch;  // epoch of TEME and TOD; none: each state's time
   std::vector<Instant> at;             // ascending
   std::vector<State> states;           // in the file's frame
   int line = 0;                        // of the metadata

@@ -26,7 +26,7 @@ struct EquatorialOrbit {
   [[nodiscard]] Vec3 in_space(const Vec3& d) const {
     return about_z(about_x(d, inclination_deg), node_deg);
   }
-  // Unit, u the argument of latitude.
+  // Unit vectors; u is the argument of latitude.
   [[nodiscard]] Vec3 position(double u_deg) const { return in_space(about_z({1, 0, 0}, u_deg)); }
   [[nodiscard]] Vec3 velocity(double u_deg) const { return in_space(about_z({0, 1, 0}, u_deg)); }
   [[nodiscard]] Vec3 pole() const { return in_space({0, 0, 1}); }

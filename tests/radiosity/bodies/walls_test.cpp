@@ -79,8 +79,7 @@ TEST(Walls, TheSkyIsHiddenFromACameraInAClosedRoomAlone) {
   EXPECT_FALSE(hidden_lights(builder.scene, {}).sky);
   EXPECT_TRUE(hidden_lights(builder.scene, {&builder.scene.cameras[0]}).sky);
   builder.scene.cameras.clear();
-  EXPECT_FALSE(hidden_lights(builder.scene, {}).sky);  // `solve` has no cameras: everything is
-                                                       // visible
+  EXPECT_FALSE(hidden_lights(builder.scene, {}).sky);  // `solve` has no cameras
 }
 
 // The smallest holes: the lid is a millimetre short, or a nanometre; or one of its corners differs

@@ -131,8 +131,7 @@ TEST(ObjectFormFactor, ReconciledTablesAreReciprocalAndClosed) {
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.plate(m, 1.0, 0.0, true);
   builder.plate(m, 3.0, 0.4, false);
-  builder.quad(m, {0.6, -1, 0}, {0.6, 1, 0}, {0.6, 1, 0.3}, {0.6, -1, 0.3});  // its back is visible
-                                                                              // too
+  builder.quad(m, {0.6, -1, 0}, {0.6, 1, 0}, {0.6, 1, 0.3}, {0.6, -1, 0.3});  // with a visible back
   const ObjectFormFactors raw = by_rays(builder.scene, 0.3, 256, 1, true);
   const ObjectFormFactors o = by_rays(builder.scene, 0.3, 256);
   EXPECT_GT(raw.max_reciprocity_error, 1e-4);

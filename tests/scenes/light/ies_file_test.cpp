@@ -297,8 +297,7 @@ TEST(Photometry, SampledDirectionsHaveTheTablesMoments) {
   // interpolated table. Independent samples in [-1, 1]: the standard error of a mean of N is below
   // 1 / sqrt(N).
   IesText file;
-  file.vertical = {0.0, 80.0, 120.0, 180.0};  // wide bands: the distribution of theta within a band
-                                              // matters
+  file.vertical = {0.0, 80.0, 120.0, 180.0};  // wide bands: theta within a band matters
   file.horizontal = {0.0, 45.0, 100.0, 180.0, 300.0, 360.0};
   file.candela = [](double theta, double phi) {
     return theta == 80.0 && phi > 90.0 ? 0.0 : lopsided(theta, phi);

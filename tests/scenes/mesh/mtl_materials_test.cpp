@@ -109,8 +109,7 @@ TEST(MtlMaterials, ValuesOfTextureOptionsAreRefusedWhereTheyAreNone) {
   EXPECT_TRUE(holds(refusal("-s abc"), {"a.mtl:2:11", "\"abc\" is not a number"}));
   EXPECT_TRUE(holds(refusal("-o 1 1e300"), {"a.mtl:2:13", "\"1e300\""}));
   EXPECT_TRUE(holds(refusal("-clamp yes"), {"a.mtl:2:15", "\"yes\"", "on and off"}));
-  EXPECT_EQ(refusal("-s"), "was not refused");  // a.png is no value of an option, and no file name
-                                                // remains
+  EXPECT_EQ(refusal("-s"), "was not refused");  // no value, and no file name
 }
 
 TEST(MtlMaterials, OfMaterialsOfOneNameTheFirstCounts) {
@@ -150,8 +149,7 @@ TEST(MtlMaterials, CornersWithoutCoordinatesAreNamed) {
   base::write_png(folder.path() / "a.png", 1, 1, 3, std::vector<std::uint8_t>(3, 255));
   folder.put("a.obj",
              "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 0.5 0.25\nusemtl m\n"
-             "f 1/-1 2/1 3/7\nf 3 2 1\nmtllib ./a.mtl\n");  // some programs name it with every
-                                                            // object
+             "f 1/-1 2/1 3/7\nf 3 2 1\nmtllib ./a.mtl\n");  // written with every object
   folder.put("a.mtl", "newmtl m\nKd 0.5\nmap_Kd a.png\n");
   const Scene scene =
       folder.read("format = 1\n[[object]]\nname = \"o\"\nmesh = \"a.obj\"\norient = \"as-is\"\n");

@@ -158,8 +158,7 @@ TEST(CornerNormals, StandOnTheirPolygonsSide) {
   const std::vector<Vec3> normals = corner_normals(mesh, {0, 1, 2}, std::nullopt);
   EXPECT_LT(glm::length(normals[0] - Vec3(0, 0, 1)), 1e-6);
   EXPECT_LT(glm::length(normals[1] - Vec3(-0.6, 0, 0.8)), 1e-6);
-  EXPECT_LT(glm::length(normals[2] - Vec3(0, 0, 1)), 1e-6);  // without a normal in the file: the
-                                                             // polygon's
+  EXPECT_LT(glm::length(normals[2] - Vec3(0, 0, 1)), 1e-6);  // no normal in the file
 }
 
 TEST(Round, PlyAndGltfHaveNormalsToo) {
