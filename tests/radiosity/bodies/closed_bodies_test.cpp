@@ -127,7 +127,7 @@ TEST(ClosedBodies, ARoomWithinAShellIsOpenAndItsWallsAreNot) {
   add_mesh(builder, m, scenes::make_box({0.2, 0.2, -0.05}, {0.4, 0.4, 0.3}));
   EXPECT_FALSE(covered(builder.scene, Vec3(0.5)));
   EXPECT_TRUE(covered(builder.scene, {0.5, 0.5, -0.05}));   // within the wall
-  EXPECT_TRUE(covered(builder.scene, {0.3, 0.3, 0.1}));     // in the box that stands in the room
+  EXPECT_TRUE(covered(builder.scene, {0.3, 0.3, 0.1}));     // in the box inside the room
   EXPECT_FALSE(covered(builder.scene, {0.5, 0.5, -0.15}));  // outside
 }
 

@@ -77,7 +77,7 @@ TEST(CullingBound, NoSolvedSceneExceedsIt) {
       tightest = std::max(tightest, error / culled[0].error);
     }
   }
-  // The bound is tight: some scene comes near it.
+  // The bound is tight: some scene nearly reaches it.
   EXPECT_GT(tightest, 0.3);
 }
 

@@ -49,9 +49,9 @@ TEST(ExactRows, TheSplitBetweenSkyAndBacksHasItsError) {
 }
 
 TEST(ExactRows, EdgesThatNearlyTouchAlongTheirLengthChangeLittleAndEnd) {
-  // Perpendicular unit squares with a common edge (0.2000437760754), one of them displaced and
+  // Perpendicular unit squares with a common edge (0.2000437760754). One of them is displaced and
   // rotated by the rounding of a file with six or fewer digits: F changes by about the
-  // displacement, and the work does not grow with length over gap.
+  // displacement. The work does not grow with length over gap.
   for (const double off : {1e-5, 1e-6, 1e-7, 1e-9, 1e-12}) {
     tests::SceneBuilder builder;
     const std::uint32_t m = builder.material(tests::grey(0.5));

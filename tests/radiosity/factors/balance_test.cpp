@@ -114,8 +114,8 @@ TEST(Balance, APatchThatOnlyASpecksRaysReachedBorrowsToo) {
 }
 
 TEST(Balance, WhatAPatchBorrowsDoesNotDependOnHowManyRaysItSent) {
-  // Patches of equal area: 0 and 1 see each other by two thirds and 2 by a third; 2 sees both
-  // equally, with 64 times as many rays, and no ray of theirs hit it. A_i F_ij = A_j F_ji gives it
+  // Patches of equal area: 0 and 1 see each other by two thirds and 2 by a third. 2 sees both
+  // equally, with 64 times as many rays, but all their rays missed it. A_i F_ij = A_j F_ji gives it
   // 32 of the 96 rays of 0 and of 1, so that the raw matrix is correct and balancing scales
   // nothing.
   FormFactors f;

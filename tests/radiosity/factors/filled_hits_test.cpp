@@ -56,7 +56,7 @@ TEST(ColumnSums, AreThoseOfAllRowsHoweverFewThereAre) {
 }
 
 TEST(FilledHits, LightThatFindsNoWayBackGetsOne) {
-  // 0 and 1 hit only each other, half of the light of 2 goes to 0, and 3 hits 2: nothing returns
+  // 0 and 1 hit only each other, half of the light of 2 goes to 0, and 3 hits 2. Nothing returns
   // across the cut between {0, 1} and {2, 3}, so that columns 0 and 1 have 2.5 areas of light for
   // 2. Conservation across the cut requires A_0 F_02 = A_2 F_20. Scaling the hits alone would drive
   // F_20, 0.5 by the hits, to 0.

@@ -52,7 +52,7 @@ TEST(ObjectRuns, NoRowIsLongerThanAMillionRaysForIt) {
 
 TEST(ObjectRuns, ManySmallObjectsShareABoundedCost) {
   // n objects of one patch each would add 63 n runs: up to 2048 are allowed, or a quarter of all
-  // patches if that is more. 32 objects add 2016; 33 get half as many each; for 10 000, a quarter
+  // patches if that is more. 32 objects add 2016. 33 get half as many each. For 10 000, a quarter
   // adds less than one run to each.
   for (const auto& [objects, wanted] : std::vector<std::pair<std::size_t, std::uint32_t>>{
            {32, 64}, {33, 32}, {2048, 2}, {10000, 1}}) {

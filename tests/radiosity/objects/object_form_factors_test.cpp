@@ -76,9 +76,9 @@ TEST(ObjectFormFactor, RaysGoOnFromAMirrorAndTheRowStillCloses) {
 }
 
 // Over many seeds the mean square of (F - exact) / std_error is 1 if the standard errors are
-// correct. Each standard error has a relative error of 1 / sqrt(2 n) for n degrees of freedom (16
-// replicates of every patch and 64 sign patterns: 50 or more here), so that the mean square of m of
-// them is within 4 sqrt(2 / m) of 1, and up to 4 % above.
+// correct. Each standard error has n = 50 or more degrees of freedom here (16 replicates of every
+// patch and 64 sign patterns) and thus a relative error of 1 / sqrt(2 n). The mean square over m
+// values is therefore within 4 sqrt(2 / m) of 1, and up to 4 % above.
 void expect_honest(double mean_square, double m, const char* what) {
   EXPECT_NEAR(mean_square, 1.0, 4.0 * std::sqrt(2.0 / m) + 0.04) << what;
 }
