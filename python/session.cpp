@@ -194,7 +194,7 @@ struct Session::State {
   scenes::Quality quality;  // } of the file: calls may set their own
   std::vector<std::string> warnings;
   std::optional<scenes::RayQuery> query;
-  std::vector<std::uint64_t> shape;  // digests of the input of `query`
+  std::vector<std::uint64_t> shape;                               // digests of the input of `query`
   std::map<std::string, std::vector<std::string>> view_warnings;  // by camera, for this scene
   std::list<std::pair<LightKey, app::Solved>> lights;             // most recent first
   std::size_t reads = 0, structures = 0, solves = 0, pictures = 0;

@@ -102,8 +102,8 @@ struct Solution {
   std::size_t columns = 0;  // 3 * groups
   // Per patch and column. `radiosity` excludes the exitance of surfaces sampled explicitly
   // (emitter_is_explicit), so that gather rays do not count this light twice.
-  std::vector<float> radiosity;           // lm/m^2
-  std::vector<float> indirect_radiosity;  // without direct light: rho (E - E0 explicit)
+  std::vector<float> radiosity;               // lm/m^2
+  std::vector<float> indirect_radiosity;      // without direct light: rho (E - E0 explicit)
   std::vector<float> direct_lx, indirect_lx;  // E0 and F B
   SolveReport report;
 };

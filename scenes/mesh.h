@@ -79,8 +79,8 @@ struct Mesh {
   std::vector<std::string> part_names;                // groups, objects, nodes, meshes, solids
   std::vector<std::vector<std::uint32_t>> part_sets;  // a polygon may belong to several
   std::vector<std::string> material_names;
-  std::vector<Material> materials;              // defined by the file or a library
-  std::vector<base::Location> material_places;  // one for each material
+  std::vector<Material> materials;                       // defined by the file or a library
+  std::vector<base::Location> material_places;           // one for each material
   std::vector<std::vector<std::string>> material_lacks;  // properties of each material that are
                                                          // ignored although they change the
                                                          // picture; may be shorter

@@ -57,11 +57,11 @@ class SpecularPaths {
 
   // Effect of a triangle on a shadow ray; null: the ray ends there.
   struct Face {
-    Vec3 normal{0.0};      // unit, of the front
-    double plane_m = 0.0;  // of its points, along the normal
-    Rgb through{0.0};      // share that is transmitted straight
-    Rgb reflected{0.0};    // } share reflected by a flat mirror, and
-    std::uint32_t mirror[2] = {no_mirror, no_mirror};  // } its number, by front, back
+    Vec3 normal{0.0};                                  // unit, of the front
+    double plane_m = 0.0;                              // of its points, along the normal
+    Rgb through{0.0};                                  // share that is transmitted straight
+    Rgb reflected{0.0};                                // } share reflected by a flat mirror,
+    std::uint32_t mirror[2] = {no_mirror, no_mirror};  // } and its number; front, back
     [[nodiscard]] double height_m(const Vec3& p) const { return glm::dot(p, normal) - plane_m; }
   };
   [[nodiscard]] const Face* face(std::uint32_t triangle) const {

@@ -63,8 +63,7 @@ class AccuracyParts {
 
 // The stages of `study accuracy`, for one process or in parts.
 
-inline constexpr int first_paths =
-    16;  // per pixel and side, before the required number is known
+inline constexpr int first_paths = 16;  // per pixel and side, before the required number is known
 
 // The two halves of a reference, batch by batch.
 struct PathReference {

@@ -138,7 +138,7 @@ struct Studio {
   double time_limit_s = 0.0;                   // for one picture; 0: none
   std::size_t number = 0;                      // index of the picture in the call
   std::optional<double> white_cd_per_m2 = {};  // of its PNGs, set by the first picture
-  const RenderParts* parts = nullptr;  // parts that form pictures; nullptr: drawn here
+  const RenderParts* parts = nullptr;          // parts that form pictures; nullptr: drawn here
 };
 
 // Size, layers and rays of one camera's picture.

@@ -70,7 +70,7 @@ constexpr CsvColumn csv_columns[] = {
 
 // A line of the text output.
 struct Line {
-  std::string scene, camera, target, lamps, why;  // why: in the worst case
+  std::string scene, camera, target, lamps, why;           // why: in the worst case
   std::vector<std::pair<studies::Verdict, int>> verdicts;  // counts, in the results' order
   double best = -1.0, worst = 2.0;
   int count = 0;

@@ -47,8 +47,8 @@ struct FormFactors {
   std::vector<double> sky, black;    // F_i,sky and F_i,black: shares of patch i's view
   std::vector<double> escape, lost;  // shares of j's light to the sky, to black backs
   std::vector<double> kept;          // a_j per patch
-  std::vector<Rgb> kept_direct;  // share of direct light that ends on a patch
-                                 // (scenes/specular_paths.h); empty: all
+  std::vector<Rgb> kept_direct;      // share of direct light that ends on a patch
+                                     // (scenes/specular_paths.h); empty: all
   std::vector<double>
       back_hits;  // per object of the scene: rays of exposed patches that hit its back
   std::vector<Rgb> sky_illuminance;  // per patch, or per patch and cell of the sky, lx: pi times

@@ -22,8 +22,7 @@ struct Row {
   double landed = 0.0;            // in rays, that end on patches
   std::uint64_t rays = 0;
   std::uint32_t sent = 0;  // rays cast
-  std::uint32_t open =
-      0;  // rays cast from open points: these count
+  std::uint32_t open = 0;  // rays cast from open points: these count
 };
 
 // The rows of one chunk of patches.

@@ -114,7 +114,7 @@ class Patches {
   static constexpr std::uint32_t pair_of = 0x1FFFFFFFU;  // bits of an entry for the position
   std::vector<PartNode> part_nodes;
   std::vector<Outline> outlines;
-  std::shared_ptr<const Traces> traces;  // walls that divide cells; or null
+  std::shared_ptr<const Traces> traces;             // walls that divide cells; or null
   std::shared_ptr<const ClusterMembers> clustered;  // null: no cluster
   double cluster_edge_m = 0.0;                      // wanted edge of the clusters; 0: none
 

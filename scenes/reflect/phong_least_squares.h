@@ -15,7 +15,7 @@ inline constexpr double most_shininess = 20000.0;
 
 struct LeastSquaresFit {
   PhongFit fit;
-  std::vector<double> shape;  // standard deviation of each point = noise * shape
+  std::vector<double> shape;    // standard deviation of each point = noise * shape
   std::optional<double> noise;  // no value with as many unknowns as points
   bool lobe_found = false;      // by the F test
 };

@@ -26,7 +26,7 @@ struct Mission {
   TimeSpan time;          // `start` is the time of the scene's own Sun and Earth
   bool has_span = false;  // [time] has more than one time
   std::shared_ptr<const Trajectory> trajectory;
-  std::string attitude = "bay-to-earth";  // of orbit_attitudes or "inertial"; empty: history
+  std::string attitude = "bay-to-earth";     // of orbit_attitudes or "inertial"; empty: history
   std::string inertial_as = "bay-to-earth";  // attitude at time.start, then fixed
   std::shared_ptr<const AttitudeHistory> history;
   glm::dmat3 body_axes{1.0};  // columns: the history's body axes in the scene

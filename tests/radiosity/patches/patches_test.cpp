@@ -21,8 +21,7 @@ scenes::Scene assorted_scene() {
   const auto v = static_cast<std::uint32_t>(builder.scene.vertices.size());
   builder.scene.vertices.insert(builder.scene.vertices.end(),
                                 {{0, 9, 0}, {7, 9, 0}, {7, 9.4, 0.2}});
-  for (std::uint32_t turn = 0; turn < 3;
-       ++turn) {  // each corner in turn is the first vertex
+  for (std::uint32_t turn = 0; turn < 3; ++turn) {  // each corner in turn is the first vertex
     builder.scene.triangles.push_back(
         {{v + turn, v + (turn + 1) % 3, v + (turn + 2) % 3}, 0, plain, 100 + turn});
   }
