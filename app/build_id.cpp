@@ -19,7 +19,7 @@ namespace {
 // Notes are padded to four bytes.
 std::size_t padded(std::size_t bytes) { return (bytes + 3) / 4 * 4; }
 
-// The build id among the notes of one segment; empty: it is not there.
+// The build id in the notes of one segment; empty if absent.
 std::string id_among(std::span<const std::byte> notes) {
   constexpr std::string_view owner("GNU\0", 4);
   while (notes.size() >= sizeof(ElfW(Nhdr))) {
@@ -51,14 +51,14 @@ bool holds(const dl_phdr_info& object, const void* address) {
   return false;
 }
 
-// The program, or the Python module, that holds this code; other libraries are passed over.
+// Finds the program, or the Python module, that contains this code; skips other libraries.
 int look_at(dl_phdr_info* object, std::size_t, void* found) {
   static const char here = 0;
   if (!holds(*object, &here)) return 0;
   for (int k = 0; k < object->dlpi_phnum; ++k) {
     const ElfW(Phdr)& segment = object->dlpi_phdr[k];
     if (segment.p_type != PT_NOTE) continue;
-    // The loader states addresses as numbers. NOLINTNEXTLINE(performance-no-int-to-ptr)
+    // The loader gives addresses as integers. NOLINTNEXTLINE(performance-no-int-to-ptr)
     const auto* start = reinterpret_cast<const std::byte*>(object->dlpi_addr + segment.p_vaddr);
     std::string id = id_among({start, segment.p_memsz});
     if (!id.empty()) *static_cast<std::string*>(found) = std::move(id);

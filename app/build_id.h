@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which build of the program this is.
+// Identifies the build of the program.
 #pragma once
 
 #include <string>
 
 namespace earthshine::app {
 
-// The digest that the linker took of all code and constants (the ELF note GNU build-id), as hex
-// digits: another compiler, option or line of source gives another. Throws base::Error (Work) in a
-// program that was linked without.
+// The linker's digest of all code and constants (the ELF note GNU build-id), as hex digits: another
+// compiler, option or source gives another id. Throws base::Error (Work) if the program was linked
+// without it.
 [[nodiscard]] const std::string& build_id();
 
 }  // namespace earthshine::app

@@ -75,7 +75,7 @@ void check_ranks_alike(const Json& things) {
 
 namespace {
 
-// The squares of so little light leave the numbers of a float, and with them the stated errors.
+// Squares of such small values underflow in float, and with them the stated errors.
 void note_faint_light(const LoadedScene& loaded) {
   constexpr double faint = 1e-10;
   const scenes::Scene& scene = loaded.scene;
@@ -225,7 +225,7 @@ std::vector<std::string> limits_of_balance(const radiosity::Solution& solution, 
                     "quality.form_factor_rays",
                     balance.held, balance.balanced ? where : ""));
   }
-  // Less light than that no result shows, whatever else is exact.
+  // A smaller defect is invisible in results, however accurate the rest.
   constexpr double tells = 1e-6;
   if (balance.balanced || balance.sweeps == 0 || balance.after <= std::max(tells, enough)) {
     return limits;

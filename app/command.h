@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the commands share: the scene as read, warnings about a solution, stage times.
+// Common code of the commands: loading scenes, warnings about a solution, stage times.
 #pragma once
 
 #include <chrono>
@@ -33,22 +33,22 @@ struct Common {
   int threads = 0;  // 0: all
   std::uint64_t seed = 1;
   bool quiet = false;
-  std::uint64_t max_memory_bytes = 0;  // 0: what is free
+  std::uint64_t max_memory_bytes = 0;  // 0: the free memory
   std::vector<std::string> arguments;  // the whole call, from the command on
 };
 
-// The arguments of the call without those that say how it is done: --part, --wait, --threads,
+// The arguments without options that only affect execution: --part, --wait, --threads,
 // --max-memory, --quiet and --json.
 [[nodiscard]] std::vector<std::string> part_free(const std::vector<std::string>& arguments);
 
-// What --part says; empty without it.
+// The value of --part; empty if absent.
 [[nodiscard]] std::string part_in(const std::vector<std::string>& arguments);
 
-// Throws base::Error (Input) unless each of these, by name, is the same for all ranks: those that
-// differ would wait for each other for ever, or make one picture of two scenes.
+// Throws base::Error (Input) unless each value is equal on all ranks: otherwise ranks would wait
+// for each other forever, or render one picture of two scenes.
 void check_ranks_alike(const Json& things);
 
-// One file per command defines it: its options, and what it does once they are read.
+// A command: its options, and its action after they are read. Each file defines one.
 struct Command {
   CLI::App* parser = nullptr;
   std::function<void(const Common&)> run;
@@ -62,17 +62,17 @@ struct Command {
 [[nodiscard]] Command add_new(CLI::App& program);
 [[nodiscard]] Command add_relight(CLI::App& program);
 [[nodiscard]] Command add_console(CLI::App& program);
-// `degrade` itself, and `degrade certify`.
+// `degrade` and `degrade certify`.
 [[nodiscard]] std::vector<Command> add_degrade(CLI::App& program);
 [[nodiscard]] Command add_certify(CLI::App& degrade);
 [[nodiscard]] Command add_fit_phong(CLI::App& program);
 [[nodiscard]] Command add_report(CLI::App& program);
 [[nodiscard]] Command add_manual(CLI::App& program);
 [[nodiscard]] Command add_completion(CLI::App& program);
-// What runs a call as if it had been typed, for `merge`. Its exit code.
+// Runs a call as if entered on the command line, for `merge`. Returns its exit code.
 using RunCall = std::function<void(const std::vector<std::string>& arguments)>;
 [[nodiscard]] Command add_merge(CLI::App& program, const RunCall& run_call);
-// `study` itself, which runs nothing, and one command of it per study.
+// `study`, which only groups, and one command per study.
 [[nodiscard]] std::vector<Command> add_study(CLI::App& program);
 
 // SCENE, --set and --error.
@@ -81,12 +81,12 @@ struct SceneInput {
   std::vector<std::string> overrides;               // key=value
   std::optional<base::Location> overrides_at = {};  // in a file; none: --set
 
-  // Whether the call itself names the error that it wants, other than a scene, whose quality.error
-  // stands for whatever is made of it.
+  // Whether the call itself sets a wanted error, by an option or an override, not the scene's
+  // quality.error.
   [[nodiscard]] bool wants_error() const;
 };
 
-// All was done and written, but not to the error that the call wants: exit code 3.
+// Everything was computed and written, but not to the wanted error: exit code 3.
 struct StoppedShort : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -94,62 +94,62 @@ struct StoppedShort : std::runtime_error {
 struct Size {
   int columns = 0, rows = 0;
 };
-// A scene with the effects that were decided for the call.
+// A scene with the effects of the call.
 struct LoadedScene {
   scenes::Scene scene;
-  scenes::Asked asked;  // what the call asks of it
+  scenes::Asked asked;  // request of the call
   scenes::LightGroups groups;
   scenes::Effects effects;
-  std::vector<scenes::Culling> culled;  // switched off in the above, as they cannot matter
+  std::vector<scenes::Culling> culled;  // switched off above, because they cannot matter
 
   [[nodiscard]] scenes::World world(const scenes::RayQuery& query) const {
     return {scene, groups, effects, query};
   }
 };
-// What a call wants of the scene that was read; nothing said: all of it.
+// Request of a call for a loaded scene; default: everything.
 struct WantedEffects {
   scenes::Asked asked;
-  bool culls = false;  // those that cannot matter are switched off
+  bool culls = false;  // switches off effects that cannot matter
 };
 using AskEffects = std::function<WantedEffects(const scenes::Scene&)>;
 // Warnings go to standard error unless `quiet`.
 [[nodiscard]] LoadedScene load(const SceneInput& input, bool quiet, const AskEffects& ask = {});
 
-// The two steps of it. Checks the CCTV cameras and range sensors of a scene that was read.
+// The two steps of load(). Checks the CCTV cameras and range sensors of the scene.
 [[nodiscard]] LoadedScene check_scene(scenes::Scene scene);
-// The only place where a call's effects are decided, each time anew.
+// Decides the effects of a call; no other code does. May be repeated.
 void decide_effects(LoadedScene& loaded, const WantedEffects& wanted);
 
-// The rays of what was read, after check_input(): every command comes by its rays here.
+// Ray queries for the scene, after check_input(); the only source of ray queries in commands.
 [[nodiscard]] scenes::RayQuery ray_query(LoadedScene& loaded, const scenes::SceneUse& use,
                                          bool quiet, bool draws = false);
-// Adds to its warnings what in it is surely a mistake (scenes/plausible), on standard error too
-// unless `quiet`. draws: its cameras are checked first (raytrace::check_camera), which may throw.
+// Adds warnings about likely mistakes (scenes/plausible), also on standard error unless `quiet`.
+// draws: first checks the cameras (raytrace::check_camera), which may throw.
 void check_input(LoadedScene& loaded, const scenes::RayQuery& query, const scenes::SceneUse& use,
                  bool quiet, bool draws = false);
 
-// Both throw base::Error (Input) where there is none. named_at: where a file or an option names it.
+// Both throw base::Error (Input) without such a camera. named_at: place in a file or option.
 [[nodiscard]] const scenes::Camera& first_camera(const scenes::Scene& scene);
 [[nodiscard]] const scenes::Camera& choose_camera(const scenes::Scene& scene,
                                                   const std::string& name,
                                                   const base::Location& named_at);
-// Throws base::Error (Input) where one is named twice: its pictures would have the same name.
+// Throws base::Error (Input) for a repeated camera: its pictures would have the same name.
 [[nodiscard]] std::vector<const scenes::Camera*> each_once(
     std::vector<const scenes::Camera*> cameras);
 
-// A line on stderr where the form factors could not be balanced, with how near they came and which
-// object is furthest off; and one where that took more than a thousandth of the light.
-// Where the solution fell short of its laws, and what would help; empty where it did not.
+// Messages with a remedy if the form factors are not balanced (with the remaining defect and the
+// object with the largest one), or if patches send more than a thousandth of their light to
+// themselves. Empty otherwise.
 [[nodiscard]] std::vector<std::string> limits_of_balance(
     const radiosity::Solution& solution, double enough = radiosity::balance_to_rounding);
-// enough: the defect that was asked for.
+// Notes them on stderr. enough: the required defect.
 void note_balance(const radiosity::Solution& solution,
                   double enough = radiosity::balance_to_rounding);
 
-// A line on stderr for each object that is seen from behind more than from the front.
+// Notes each object that is seen more from behind than from the front.
 void note_backs(const radiosity::SolveReport& report);
 
-// The scene's accuracy knobs as the solver wants them.
+// The scene's accuracy settings for the solver.
 [[nodiscard]] radiosity::SolveOptions solve_options(const scenes::Scene& scene,
                                                     const Common& common);
 
@@ -178,12 +178,12 @@ class StageTimes {
   [[nodiscard]] Json json() const;
 
  private:
-  // What is done more than once adds up.
+  // Repeated stages add up.
   void add(const std::string& name, double seconds);
   std::vector<Stage> stages_;
 };
 
-// Largest memory the process has used so far.
+// Peak memory of the process so far.
 [[nodiscard]] double peak_memory_mib();
 
 }  // namespace earthshine::app

@@ -35,8 +35,8 @@ void remember(int signal) {
   std::signal(signal, at_once);
 }
 
-// Without SA_RESTART, so that what waits for a reader that does not come is woken, too. Whoever
-// started the program may have it ignore a signal, as nohup does.
+// Without SA_RESTART, so that blocking writes are interrupted too. Signals that the parent ignores
+// stay ignored, as with nohup.
 void (*take_over(int signal))(int) {
   struct sigaction ours {};
   struct sigaction before {};
@@ -59,7 +59,7 @@ void print(std::string_view text) {
 
 void note(std::string_view line) {
   if (silent_now) return;
-  if (some_note_was_lost) return;  // nobody listens; a full pipe would wait once more
+  if (some_note_was_lost) return;  // no reader; a full pipe would block again
   if (!write_whole(base::escaped(line) + "\n", stderr)) some_note_was_lost = true;
 }
 
@@ -130,8 +130,8 @@ void Interrupt::ask(bool asked) { interrupted = asked; }
 
 namespace {
 
-// Where a signal is handled in one way, in the other from now on; what is ignored stays so. Returns
-// whether any was.
+// Changes the handlers of signals that have the handler `from`; ignored signals stay ignored.
+// Returns whether any changed.
 bool handle_otherwise(void (*from)(int), void (*to)(int)) {
   bool changed = false;
   for (const int signal : ending_signals) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program's two voices: results on standard output, everything else on standard error. What
-// names of files and things could do to a terminal is taken out here (base/error.h), once for all.
+// Console output: results on standard output, everything else on standard error. Control characters
+// in names are removed here (base/error.h).
 #pragma once
 
 #include <array>
@@ -13,20 +13,19 @@
 namespace earthshine::app {
 
 // Writes to standard output and flushes it. Throws base::Error (Work) on a full disk or a closed
-// pipe: a result that did not arrive is not done.
+// pipe: a lost result is a failure.
 void print(std::string_view text);
 
-// One line on standard error. Work goes on where nobody listens any more.
+// One line on standard error. Ignores write errors.
 void note(std::string_view line);
 
-// The same of a handler of signals, in words without names. Where it would have to wait it is not
-// said.
+// note() for signal handlers, with fixed texts only. Writes nothing if it would block.
 void note_in_handler(std::string_view line) noexcept;
 
-// For a process that is one of several and not their speaker: neither prints nor notes.
+// For a process that is not the first of several: suppresses all output.
 void be_silent(bool silent);
 
-// Whether a note did not arrive, for the exit code: what was not said is not done.
+// Whether a note was lost, for the exit code.
 [[nodiscard]] bool lost_a_note();
 
 // "1 h 02 min", "1 min 05 s", "12.3 s" or "0.004 s".
@@ -35,8 +34,8 @@ void be_silent(bool silent);
 // "812", "25.3 k", "1.2 M", "3.4 G".
 [[nodiscard]] std::string short_count(double count);
 
-// A line on standard error with percent, time gone and time to go, redrawn at most ten times a
-// second and wiped at the end. Silent unless standard error is a terminal.
+// A progress line on standard error with percentage, elapsed and remaining time, updated at most
+// ten times a second and erased at the end. Silent unless standard error is a terminal.
 class Progress {
  public:
   Progress(const std::string& label, bool quiet);
@@ -53,12 +52,12 @@ class Progress {
   Clock::time_point start_ = Clock::now(), last_{};
 };
 
-// Of Ctrl-C, of a queue that wants its machine back, and of a terminal that closes.
+// Signals of Ctrl-C, of batch queues, and of a closed terminal.
 inline constexpr std::array ending_signals{SIGINT, SIGTERM, SIGHUP};
 
-// Ctrl-C while a picture is worked out: the first asks for an end with what is finished, the second
-// ends the program at once. Takes ending_signals over for as long as it lives. One at a time. Of
-// several ranks it does nothing: they would not stop at the same place, so a signal ends them
+// Handles Ctrl-C during a picture: the first signal requests a stop with partial results, the
+// second ends the program at once. RAII: handles ending_signals during its lifetime; one at a time.
+// Has no effect with several ranks: they would not stop at the same place, so a signal ends them
 // all.
 class Interrupt {
  public:
@@ -67,20 +66,20 @@ class Interrupt {
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 
-  // Safe on many threads.
+  // Thread-safe.
   [[nodiscard]] static bool asked();
 
-  // For a host that handles signals itself, as Python does: no Interrupt takes them over from then
-  // on, and the host asks for an end, or says that none is asked for.
+  // For a host that handles signals itself, such as Python: Interrupt no longer installs handlers,
+  // and the host requests or cancels the stop.
   static void leave_signals_to_host();
   static void ask(bool asked);
 
-  // The same for work that is kept whole or not at all: throws Left where an end is asked for.
+  // For work that cannot be partial: throws Left if a stop is requested.
   struct Left {};
   static void leave_if_asked() {
     if (asked()) throw Left();
   }
-  // To be asked while such work goes on: throws so, or says that it is to go on.
+  // As a callback during such work: throws Left, or returns that work continues.
   static bool leave_or_go_on() {
     leave_if_asked();
     return false;
@@ -92,8 +91,8 @@ class Interrupt {
   std::array<Handler, ending_signals.size()> before_{};
 };
 
-// While an Interrupt lives, for work of which nothing could be kept, as a solve: the first signal
-// ends the program at once.
+// Within an Interrupt, for work without partial results, such as a solve: the first signal ends the
+// program at once.
 class EndAtOnce {
  public:
   EndAtOnce();

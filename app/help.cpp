@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t width = 80, column = 26;
 
-// In the order of the help; an option that is in none of them comes under "Options".
+// In the order of the help; other options appear under "Options".
 struct Group {
   std::string_view title;
   std::vector<std::string_view> options;
@@ -40,7 +40,7 @@ const std::array<Group, 7>& groups() {
   return all;
 }
 
-// An option that means one thing here and another there says its group itself.
+// Options with several meanings set their group themselves.
 std::string group_of(const CLI::Option& option) {
   if (option.get_group() != "Options") return option.get_group();
   for (const Group& group : groups()) {
@@ -51,7 +51,7 @@ std::string group_of(const CLI::Option& option) {
   return "Options";
 }
 
-// The text from `at` on in lines of `width`, all but the first indented to there.
+// The text from column `at` on in lines of `width`, later lines indented to this column.
 std::string wrapped(std::string_view text, std::size_t at) {
   std::string out;
   std::size_t used = at;
@@ -92,7 +92,7 @@ std::vector<std::string> commands_of(const CLI::App& parser) {
   return names;
 }
 
-// A word nobody asked for is the likeliest reason of any other complaint, so it is named first.
+// An unknown word is the most likely cause of other errors, so it is reported first.
 std::string unknown_word(const CLI::App& program) {
   const CLI::App& parser = chosen_parser(program);
   const std::vector<std::string> extras = parser.remaining(false);
@@ -118,7 +118,7 @@ std::string unknown_word(const CLI::App& program) {
                      fmt::join(known, ", "));
 }
 
-// What the library found, and what to do about it.
+// The library's error, with a remedy.
 std::string found_by_parser(const CLI::App& parser, const CLI::ParseError& error) {
   const std::string what = error.what();
   if (what == "A subcommand is required") {

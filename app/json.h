@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON and CSV as the program writes them.
+// JSON and CSV output.
 #pragma once
 
 #include <fmt/format.h>
@@ -19,21 +19,20 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] inline Json to_json(const Rgb& value) {
   return Json::array({value.r, value.g, value.b});
 }
-// Indented text with a final newline. Numbers that are not finite become null.
+// Indented text with a final newline. Non-finite numbers become null.
 [[nodiscard]] std::string dump(const Json& json);
-// Text of fewer lines: one for each member of an object, of a list of lists or objects one for each
-// entry.
+// Compact text: one line per member of an object, or per entry of a list of lists or objects.
 [[nodiscard]] std::string dump_lines(const Json& json);
-// Of the text of dump(); of a file's bytes.
+// Digest of the text of dump(), or of a file's bytes.
 [[nodiscard]] std::string digest_of(const Json& json);
 [[nodiscard]] std::string digest_of_file(const std::filesystem::path& path);
-// Lists and objects within one another in a file that is read: what the program writes has a
-// dozen, and each level takes some of the stack.
+// Maximum nesting in files that are read: the program writes about a dozen levels, and each level
+// uses stack.
 inline constexpr int deepest_json = 64;
-// The content of a file of at most 1 GiB. Throws base::Error: (Input) where it is no JSON, with the
-// byte, or is nested deeper; `advice` says what to do.
+// Contents of a file of at most 1 GiB. Throws base::Error: (Input) for invalid JSON, with the byte,
+// or for deeper nesting; `advice` is the remedy.
 [[nodiscard]] Json read_json(const std::filesystem::path& path, const std::string& advice);
-// What the program wrote into a file; discarded (nlohmann) where there is none or it is broken.
+// A file written by this program; discarded (nlohmann) if it is missing or broken.
 [[nodiscard]] Json json_in(const std::filesystem::path& path);
 
 // A number, or null.
@@ -42,17 +41,17 @@ template <class Number>
   return value ? Json(*value) : Json();
 }
 
-// A text as a cell of comma-separated values (RFC 4180). One that a spreadsheet would run as a
-// formula, as it begins with = + - @ and is no number, gets an apostrophe before it.
+// A text as a CSV cell (RFC 4180). A text that a spreadsheet would run as a formula (it begins with
+// = + - @ and is not a number) gets a leading apostrophe.
 [[nodiscard]] std::string csv_cell(std::string text);
 
-// Comma-separated values (RFC 4180): `rows` are flat objects with the keys of the first, which
-// become the header. null is an empty field.
+// CSV (RFC 4180): `rows` are flat objects with the keys of the first one, which become the header.
+// null is an empty field.
 [[nodiscard]] std::string csv_of(const Json& rows);
 
 }  // namespace earthshine::app
 
-// In a text: a string without quotes, a number by the given format.
+// In formatted text: a string without quotes, a number by the given format.
 template <>
 struct fmt::formatter<earthshine::app::Json> {
   constexpr auto parse(fmt::format_parse_context& context) {

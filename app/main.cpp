@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the command line, runs one command, turns what went wrong into one line and an exit code:
-// 0 done, 1 the work failed, 2 the call or the scene is wrong, 3 stopped short of the wanted error.
+// Parses the command line, runs one command, and converts errors to one line and an exit code: 0
+// success, 1 the work failed, 2 the call or the scene is wrong, 3 the wanted error was not reached.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,8 +23,8 @@
 #include "base/parallel.h"
 #include "base/ranks/start.h"
 
-// Read by jemalloc as it starts. Pictures take and give back a few values a pixel again and again:
-// their pages are kept until base/free_memory.h gives them back.
+// jemalloc's configuration at start. Pictures repeatedly allocate and free a few values per pixel:
+// their pages are kept until base/free_memory.h releases them.
 extern "C" {
 extern const char* malloc_conf;
 const char* malloc_conf = "dirty_decay_ms:-1";
@@ -54,9 +54,9 @@ int usage_error(const CLI::App& program, const CLI::ParseError& error) {
   return call_is_wrong;
 }
 
-// Who does a call. ranks: those that share out its loops; nullptr: this process does all of it.
-// processes: that work on this machine at once and share its memory. whole: the call is the user's,
-// and not a part of it that study_in_ranks() makes.
+// Processes of a call. ranks: share its loops; nullptr: this process alone. processes: number on
+// this machine that share its memory. whole: the user's call, not a part of it made by
+// study_in_ranks().
 struct Workers {
   base::Ranks* ranks = nullptr;
   int processes = 1;
@@ -64,12 +64,12 @@ struct Workers {
 };
 int run(std::vector<std::string> arguments, const Workers& workers);
 
-// Studies share out the loops of their solution, then what they keep in points/, as with --part.
-// The report is the first rank's.
+// Ranks of a study share the loops of its solution, then its points/ as with --part. The first rank
+// reports.
 int study_in_ranks(const std::vector<std::string>& arguments, base::Ranks& ranks) {
   const auto task = [&](const std::string& part, const Workers& workers) {
     std::vector<std::string> call = arguments;
-    if (part != "merge") std::erase(call, "--json");  // which alone has a report
+    if (part != "merge") std::erase(call, "--json");  // only the merge has a report
     call.insert(call.end(), {"--part", part});
     return run(std::move(call), workers);
   };
@@ -84,9 +84,9 @@ int study_in_ranks(const std::vector<std::string>& arguments, base::Ranks& ranks
   return speaks ? std::max(code, task("merge", {})) : code;
 }
 
-// Refuses what ranks cannot share out. True for studies, which do it by their points, too.
+// Rejects calls that ranks cannot share. True for studies, which also share points.
 bool is_study_of_ranks(const CLI::App& program, const std::vector<std::string>& arguments) {
-  bool solves = false;  // the solution alone
+  bool solves = false;  // the solution only
   for (std::size_t k = 0; k < arguments.size(); ++k) {
     const std::string& word = arguments[k];
     const bool part = word.starts_with("--part");
@@ -135,7 +135,7 @@ int run(std::vector<std::string> arguments, const Workers& workers) {
   add_common_options(program, common, threads);
   for (const Command& command : commands) add_common_options(*command.parser, common, threads);
   try {
-    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+    std::reverse(arguments.begin(), arguments.end());  // the order that CLI11 expects
     program.parse(arguments);
     refuse_empty_words(program);
   } catch (const CLI::ParseError& error) {
@@ -157,7 +157,7 @@ int run(std::vector<std::string> arguments, const Workers& workers) {
   const base::ThreadLimit limit(common.threads);
   const base::MemoryLimit memory(common.max_memory_bytes, workers.processes);
   const base::RanksInForce in_force(ranks);
-  // Nor does one take memory that another has yet to count.
+  // A barrier too: no rank allocates memory before all have measured the free memory.
   check_ranks_alike(Json::object({{"the call", part_free(common.arguments)}}));
   for (const Command& command : commands) {
     if (command.parser->parsed() && command.run) command.run(common);
@@ -165,10 +165,10 @@ int run(std::vector<std::string> arguments, const Workers& workers) {
   return exit_code;
 }
 
-// Of ranks the one that fails says why, and all are told to end, itself too.
+// The rank that fails reports why, and ends all ranks including itself.
 volatile std::sig_atomic_t is_rank = 0;
 
-// Interrupted or told to end: no half-written file stays behind, and the shell sees the signal.
+// Interrupted or terminated: removes unfinished files, and the shell sees the signal.
 void end_by_signal(int signal) {
   base::remove_unfinished_files();
   if (is_rank == 0) {
@@ -180,7 +180,7 @@ void end_by_signal(int signal) {
   std::raise(signal);
 }
 
-// Libraries throw where nothing may be thrown: oneTBB, as it ends, where no thread can be made.
+// For exceptions where none are allowed: oneTBB at exit, if no thread can be created.
 [[noreturn]] void end_by_exception() {
   base::remove_unfinished_files();
   const std::exception_ptr thrown = std::current_exception();
@@ -188,7 +188,7 @@ void end_by_signal(int signal) {
     if (thrown) std::rethrow_exception(thrown);
     std::fputs("earthshine: ended by a fault of a library\n", stderr);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "earthshine: %s\n", error.what());  // no memory may be left for note()
+    std::fprintf(stderr, "earthshine: %s\n", error.what());  // note() might lack memory
   } catch (...) {
     std::fputs("earthshine: ended by a fault of a library\n", stderr);
   }
@@ -196,11 +196,11 @@ void end_by_signal(int signal) {
 }
 
 void take_signals() {
-  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported where it is written to,
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows beyond `ulimit -f` likewise
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported by the write,
+  std::signal(SIGXFSZ, SIG_IGN);  // and so is a file beyond `ulimit -f`
   std::set_terminate(end_by_exception);
   for (const int signal : ending_signals) {
-    // Whoever started the program may have it ignore a signal, as nohup does.
+    // Signals that the parent ignores stay ignored, as with nohup.
     if (std::signal(signal, end_by_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
 }
@@ -210,8 +210,8 @@ int complain(std::string_view what, int exit_code) {
   return exit_code;
 }
 
-// What is wrong with the call all ranks find at once: the first says it and ends the others, who
-// wait as long as that takes. What is wrong with one of them alone it says itself.
+// Time that other ranks wait after an error. All ranks find errors of the call: the first one
+// reports them and ends the others meanwhile. Errors of one rank are reported by that rank.
 constexpr std::chrono::seconds time_to_speak{3};
 
 void end_rank(base::Ranks& ranks, int exit_code, const std::string& what) {

@@ -17,8 +17,8 @@ std::string size_text(double in_mib) {
   return fmt::format("{:.{}f} GiB", in_mib / 1024.0, in_mib < 10240.0 ? 1 : 0);
 }
 
-// Of one process; of ranks the mean of those on this machine, whose room is divided by their number
-// (base/free_memory.h): the first needs more than the others.
+// Memory of one process; with ranks the mean over those on this machine, whose free memory is
+// divided by their number (base/free_memory.h): the first needs more than the others.
 double bytes_here(studies::MemoryCase sizes) {
   const double first = studies::memory_needed(sizes).total();
   if (base::ranks() == nullptr) return first;
@@ -28,14 +28,14 @@ double bytes_here(studies::MemoryCase sizes) {
   return others + (first - others) / base::ranks()->count_here();
 }
 
-// Refuses what cannot fit. Rows are looked at only if the most that could be does not fit.
+// Rejects runs that cannot fit. Casts rows only if the upper bound does not fit.
 void refuse_too_much(const LoadedScene& loaded, const scenes::RayQuery& query,
                      const radiosity::SolveOptions& solver, studies::MemoryCase sizes) {
   const auto free_bytes = base::free_memory_bytes();
   if (!free_bytes) return;
   const auto free = static_cast<double>(*free_bytes);
   if (bytes_here(sizes) > free && sizes.solves) {
-    const base::RanksInForce alone(nullptr);  // others may have no need to look
+    const base::RanksInForce alone(nullptr);  // other ranks may not need this
     studies::expect_rows(sizes, loaded.scene, query, solver);
   }
   if (bytes_here(sizes) <= free) return;
@@ -69,7 +69,7 @@ std::string memory_text(const Json& need) {
 void check_memory(const LoadedScene& loaded, const scenes::RayQuery& query,
                   const radiosity::SolveOptions& solver, const raytrace::RenderOptions* picture,
                   bool solves) {
-  // Refinement to an error begins with the coarse patches, and asks again before it takes more.
+  // Refinement to an error begins with the coarse patches, and checks again before it adds more.
   std::optional<std::size_t> patches;
   if (solver.refine.on && solver.refine.error > 0.0 && radiosity::is_lit(loaded.effects)) {
     patches = radiosity::count_patches(loaded.scene, solver.refine.start_edge_m);
@@ -97,7 +97,7 @@ bool patches_fit(const LoadedScene& loaded, const radiosity::SolveOptions& solve
       studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver, patches);
   sizes.states_error = states_error;
   const auto free_bytes = base::free_memory_bytes();
-  // Machines differ, and ranks must decide alike.
+  // Machines differ, and ranks must decide equally.
   return base::holds_on_all_ranks(!free_bytes ||
                                   bytes_here(sizes) <= static_cast<double>(*free_bytes));
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int largest_edge_px = 16384;
 
-// Number and unit: "12EV"; nothing where there is no number.
+// Number and unit: "12EV"; no value without a number.
 std::optional<std::pair<double, std::string>> measure_of(const std::string& text) {
   double number = 0.0;
   const char* end = text.data() + text.size();
@@ -22,7 +22,7 @@ std::optional<std::pair<double, std::string>> measure_of(const std::string& text
   return std::pair{number, std::string(stop, end)};
 }
 
-// Nothing where `text` is none of what --exposure takes.
+// No value if `text` is not valid for --exposure.
 std::optional<ToneChoice> tone_of(const std::string& text) {
   ToneChoice tone;
   const std::string_view start = "auto:";

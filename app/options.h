@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options that several commands have, read strictly.
+// Options common to several commands, parsed strictly.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -20,34 +20,34 @@ namespace earthshine::app {
 // SCENE, --set and --error.
 void add_scene_options(CLI::App& command, SceneInput& input);
 
-// --size CxR; stays empty where the camera's own size is meant.
+// --size CxR; empty means the camera's own size.
 void add_size_option(CLI::App& command, std::optional<Size>& size);
 
-// How bright a PNG shows a picture: each by base::tone_map, or by a white that pictures share.
+// Brightness of a PNG: per picture by base::tone_map, or a common white.
 struct ToneChoice {
-  std::optional<double> percent;          // of the lit pixels that are darker than white
+  std::optional<double> percent;          // of the lit pixels, darker than white
   std::optional<double> white_cd_per_m2;  // or white itself
   base::ToneCurve curve = base::ToneCurve::Shoulder;
 
   [[nodiscard]] bool shared() const { return percent || white_cd_per_m2; }
 };
-// The luminance of white of these pictures together. Needs a shared white.
+// The common white luminance of these pictures. Needs a shared white.
 [[nodiscard]] double white_of(const ToneChoice& tone,
                               const std::vector<const base::Image*>& pictures);
-inline constexpr double usual_percent = 99.5;                  // of --exposure auto
+inline constexpr double usual_percent = 99.5;                  // for --exposure auto
 inline constexpr double white_of_ev0 = 78.0 / (100.0 * 0.65);  // cd/m^2, at ISO 100
 // --exposure own, auto, auto:PERCENT, EV (of ISO 100: white at 1.2 2^EV cd/m^2, by H = 78 lx s /
-// ISO for white and H = 0.65 L t / N^2, ISO 12232) or cd/m2; --curve shoulder or clip. `more`: what
-// else an option's help says.
+// ISO for white and H = 0.65 L t / N^2, ISO 12232) or cd/m2; --curve shoulder or clip. `more`:
+// further help text of an option.
 void add_tone_options(CLI::App& command, ToneChoice& tone, const std::string& more);
 
-// A note where --curve has nothing to bend.
+// Notes a --curve without effect.
 void note_unused_curve(const ToneChoice& tone, bool quiet);
 
-// The words between the commas, also empty ones.
+// The words between commas, including empty ones.
 [[nodiscard]] std::vector<std::string> split_at_commas(const std::string& text);
 
-// What all of `text` is as a number; none where it is none.
+// The number that is the whole text; no value otherwise.
 template <class Number>
 [[nodiscard]] std::optional<Number> parsed(std::string_view text) {
   Number number{};
@@ -56,20 +56,20 @@ template <class Number>
   return problem == std::errc() && stop == end ? std::optional(number) : std::nullopt;
 }
 
-// A whole number within [least, most], read strictly: no sign for unsigned, no octal, no rounding.
+// An integer within [least, most], parsed strictly: no sign for unsigned, no octal, no rounding.
 // Throws CLI::ValidationError with the option's name.
 [[nodiscard]] std::uint64_t read_whole_number(const std::string& option, const std::string& text,
                                               std::uint64_t least, std::uint64_t most);
 
-// An option that takes such a number.
+// Adds an option for such an integer.
 void add_whole_number(CLI::App& command, const std::string& flags, std::uint64_t& value,
                       std::uint64_t least, std::uint64_t most, const std::string& help);
 
-// An option that takes a finite number within [least, most].
+// Adds an option for a finite number within [least, most].
 void add_number(CLI::App& command, const std::string& flags, std::optional<double>& value,
                 double least, double most, const std::string& help);
 
-// An option that takes one of a few words, each for a value of `kept`.
+// Adds an option with a choice of words, each for a value of `kept`.
 template <class Kept, class Value>
 CLI::Option* add_choice(CLI::App& command, const std::string& name, Kept& kept,
                         const std::vector<std::pair<std::string, Value>>& choices,
@@ -94,11 +94,11 @@ void add_memory_option(CLI::App& command, std::uint64_t& bytes);
 // --time-limit SECONDS above 0.
 void add_time_limit(CLI::App& command, double& seconds, const std::string& help);
 
-// Makes it one that may be repeated, with one value each time.
+// Allows repetition of an option, one value each time.
 CLI::Option* may_repeat(CLI::Option* option);
 
-// Of the options that were given and the commands that were named: what is kept as a word may be
-// empty where nothing is meant, so that "" would be taken for silence. Throws CLI::ValidationError.
+// Rejects empty values of given options and commands: an empty string is an error, because it would
+// be stored like an absent option. Throws CLI::ValidationError.
 void refuse_empty_words(const CLI::App& parser);
 
 }  // namespace earthshine::app

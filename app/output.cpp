@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// By device and inode, so that links of both kinds count as what they lead to; by name where there
-// is nothing yet. Empty for what may be named twice, such as /dev/null.
+// Device and inode, so that links of both kinds count as their target; the name if the file does
+// not exist. Empty for files that may be named twice, such as /dev/null.
 std::string identity(const fs::path& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) == 0) {

@@ -29,7 +29,7 @@ class HeaderWriter {
   base::ExrHeader& header_;
 };
 
-// Names may come from mesh files, whose bytes need not be UTF-8.
+// Names may come from mesh files with invalid UTF-8.
 std::string compact(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The header of a rendered EXR file: everything that decides its pixels, and how good they are.
-// Never the number of threads or a time (unless asked for): the same call gives the same bytes.
+// The header of a rendered EXR file: all input that determines its pixels, and its error. No number
+// of threads, and no times unless requested: the same call gives the same bytes.
 #pragma once
 
 #include <cstdint>
@@ -21,12 +21,12 @@ struct Provenance {
   const scenes::Camera& camera;
   const raytrace::RenderOptions& options;
   const radiosity::SolveOptions& solver;
-  const radiosity::SolveReport* solution;  // nullptr: nothing was solved
+  const radiosity::SolveReport* solution;  // nullptr: no solution
   const raytrace::RenderReport& render;
 };
 
-// For what is made of a picture that was stopped, by its header: "earthshine:partial"; else
-// nothing.
+// Mark for outputs derived from a stopped picture, from its header: "earthshine:partial"; else
+// empty.
 [[nodiscard]] HeaderTexts partial_mark(const base::ExrHeader& header);
 
 [[nodiscard]] std::string indirect_name(raytrace::Indirect indirect);
@@ -43,7 +43,7 @@ void add_origin(base::ExrHeader& header, const scenes::Scene& scene,
 // worldToNDC, screenWindowWidth and focus.
 void add_camera(base::ExrHeader& header, const scenes::Camera& camera, int columns, int rows);
 
-// Adds what the numbers of the layers asked for mean: "earthshine:objects" and
+// Adds the meaning of the requested layers' numbers: "earthshine:objects" and
 // "earthshine:materials" as JSON arrays of names, and Cryptomatte's attributes and manifests.
 void add_names(base::ExrHeader& header, const scenes::Scene& scene,
                const std::vector<std::string>& aovs);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The module earthshine._core: session.h for Python. The package beside it (earthshine/) gives it
-// the names that people use.
+// The module earthshine._core: Python bindings of session.h. The package beside it (earthshine/) is
+// the public interface.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -17,8 +17,8 @@ namespace {
 
 using namespace earthshine;  // NOLINT(google-build-using-namespace): one file of glue
 
-// Runs the work on a thread of its own, without the interpreter's lock. Meanwhile signals are
-// looked for twenty times a second: Ctrl-C asks the work to end and is raised when it has.
+// Runs the work on a separate thread without the interpreter's lock, and polls signals twenty times
+// a second: Ctrl-C stops the work and is raised afterwards.
 template <class Work>
 auto run(Work work) {
   python::ask_to_stop(false);
@@ -38,12 +38,12 @@ auto run(Work work) {
   python::ask_to_stop(false);
   try {
     (void)result.get();
-  } catch (...) {  // what a call that was asked to end says of it
+  } catch (...) {  // error of a call that was asked to stop
   }
   std::rethrow_exception(interrupt);
 }
 
-// A view of numbers that `owner` keeps alive; it may not be written to unless `writable`.
+// A view of numbers that `owner` keeps alive; read-only unless `writable`.
 template <class Number>
 py::array view(const std::vector<Number>& values, std::vector<py::ssize_t> shape,
                py::handle owner) {
@@ -60,7 +60,7 @@ py::dict layers(const base::Image& image, py::handle owner) {
   return all;
 }
 
-// Names from files need not be UTF-8.
+// Names from files may be invalid UTF-8.
 py::object text(const std::string& bytes) {
   return py::reinterpret_steal<py::object>(
       PyUnicode_DecodeUTF8(bytes.data(), static_cast<py::ssize_t>(bytes.size()), "replace"));
@@ -77,7 +77,7 @@ py::dict header_of(const base::ExrHeader& header) {
 
 using Plane = py::array_t<float, py::array::c_style | py::array::forcecast>;
 
-// A frame of planes of one size, by channel.
+// A frame from planes of one size, by channel.
 std::shared_ptr<python::Frame> frame_of(const py::dict& planes, double fov_deg) {
   auto frame = std::make_shared<python::Frame>();
   frame->fov_deg = fov_deg;
@@ -235,7 +235,7 @@ void define_sessions(py::module_& m) {
 
 }  // namespace
 
-// The macro's own functions have names of its making.
+// The macro generates functions with its own names.
 PYBIND11_MODULE(_core, m) {
   m.doc() = "Earthshine's C++ side; use the package earthshine";
   python::be_a_guest();

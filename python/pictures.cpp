@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures in memory: files of them, other lamp settings, the CCTV chain; studies.
+// Pictures in memory: reading and writing files, relighting, the CCTV chain; studies.
 #include <fmt/format.h>
 
 #include <fstream>
@@ -57,7 +57,7 @@ namespace {
 
 app::CctvSetup setup_of(const CctvView& view) { return {view.name, view.setup}; }
 
-// The camera that the request names, or the one that the frame was taken with.
+// The camera of the request, or the frame's own.
 app::CctvSetup camera_of(const Frame& frame, const Request& request, const app::Common& common) {
   if (request.has("camera")) {
     return app::cctv_of(app::camera_of_argument("camera", request.word("camera", "")), common);

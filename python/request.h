@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A call's named arguments as Python sends them, and the turn that the call takes.
+// Named arguments of a call from Python, and the lock of a call.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace earthshine::python {
 
-// Values are of the kinds that the package sends; what a user may get wrong is checked here.
+// Values have the types that the package sends; possible user errors are checked here.
 class Request {
  public:
   explicit Request(const std::string& text) : json_(app::Json::parse(text)) {}
@@ -25,7 +25,7 @@ class Request {
   [[nodiscard]] std::optional<double> number(const char* key) const;
   [[nodiscard]] std::string word(const char* key, const std::string& otherwise) const;
   [[nodiscard]] std::vector<std::string> words(const char* key) const;
-  // Throws base::Error (Input) where there are not `count` whole numbers of 0 and more.
+  // Throws base::Error (Input) unless there are `count` integers of at least 0.
   [[nodiscard]] std::optional<std::vector<int>> whole_numbers(const char* key,
                                                               std::size_t count) const;
   [[nodiscard]] std::uint64_t seed() const;
@@ -35,8 +35,7 @@ class Request {
   app::Json json_;
 };
 
-// Calls from several Python threads take turns: limits of threads and requests to stop are the
-// process's.
+// Serialises calls from several Python threads: thread limits and stop requests are per process.
 class Turn {
  public:
   Turn();
@@ -47,7 +46,7 @@ class Turn {
   base::ThreadLimit threads_;
 };
 
-// Throws Stopped where the call is asked to end.
+// Throws Stopped if the call is asked to stop.
 void leave_if_asked();
 
 }  // namespace earthshine::python

@@ -44,13 +44,12 @@ std::string version() { return EARTHSHINE_VERSION; }
 struct Light::Kept {
   radiosity::Solution solution;
   radiosity::SolveOptions solver;
-  std::vector<std::uint64_t> parts;  // digests of the scene's
+  std::vector<std::uint64_t> parts;  // digests of the scene's parts
 };
 
 namespace {
 
-// Solutions of a scene that are kept: of the cameras and lights that a program goes back and forth
-// between.
+// Number of cached solutions of a scene, for programs that alternate between cameras and lights.
 constexpr std::size_t most_kept = 4;
 
 raytrace::Indirect indirect_of(const std::string& word) {
@@ -168,7 +167,7 @@ std::vector<std::uint64_t> digests_of(const std::vector<radiosity::ScenePart>& p
   return digests;
 }
 
-// What a solution depends on: the scene's parts, the solver's knobs, the effects.
+// Cache key of a solution: the scene's parts, the solver's settings, the effects.
 struct LightKey {
   std::vector<std::uint64_t> parts;
   std::vector<std::variant<double, std::uint64_t>> knobs;
@@ -189,15 +188,15 @@ struct LightKey {
 struct Session::State {
   std::string path;
   std::optional<std::string> text;
-  std::vector<std::string> overrides;  // wanted
+  std::vector<std::string> overrides;  // requested
   bool is_read = false;
-  app::LoadedScene loaded;  // with `overrides`, if it is read
-  scenes::Quality quality;  // } of the file: calls set their own
+  app::LoadedScene loaded;  // with `overrides`, once read
+  scenes::Quality quality;  // } of the file: calls may set their own
   std::vector<std::string> warnings;
   std::optional<scenes::RayQuery> query;
-  std::vector<std::uint64_t> shape;  // digests of what `query` depends on
-  std::map<std::string, std::vector<std::string>> view_warnings;  // by camera, of this scene
-  std::list<std::pair<LightKey, app::Solved>> lights;             // the latest first
+  std::vector<std::uint64_t> shape;                               // digests of the input of `query`
+  std::map<std::string, std::vector<std::string>> view_warnings;  // by camera, for this scene
+  std::list<std::pair<LightKey, app::Solved>> lights;             // most recent first
   std::size_t reads = 0, structures = 0, solves = 0, pictures = 0;
 
   void read() {
@@ -221,7 +220,7 @@ struct Session::State {
     }
   }
 
-  // The scene with the call's wishes, its effects decided, its views checked as `render` does.
+  // Prepares the scene for a call: decides its effects, and checks its views as `render` does.
   void prepare(const app::RenderCall& call, const std::vector<const scenes::Camera*>& cameras,
                bool draws, std::optional<double> error) {
     loaded.scene.quality = quality;
@@ -324,7 +323,7 @@ std::shared_ptr<Frame> Session::render(const std::string& request_text,
   app::StageTimes times;
   times.measure("read", [&] { s.read(); });
   app::RenderCall call = call_of(request, s.path, s.overrides);
-  if (light) call.solution = "solution";  // as if it had been read from a file
+  if (light) call.solution = "solution";  // as if read from a file
   const app::Common common = common_of(request);
   const auto cameras = app::wanted_cameras(call.cameras, s.loaded.scene);
   const scenes::Camera& camera = *cameras.front();
@@ -380,7 +379,7 @@ std::shared_ptr<Light> Session::solve(const std::string& request_text) {
   app::StageTimes times;
   times.measure("read", [&] { s.read(); });
   app::RenderCall call;
-  call.all_effects = true;  // as `solve`, which knows no camera
+  call.all_effects = true;  // as in `solve`, which has no camera
   const app::Common common = common_of(request);
   s.prepare(call, {}, false, request.number("error"));
   const base::StopInForce stop([] { return app::Interrupt::asked(); });

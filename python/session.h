@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program's work as a Python process calls it: a scene that stays loaded, pictures in memory.
-// Requests and reports are JSON texts, whose keys the package's stubs (earthshine/__init__.pyi)
-// name. One call at a time: callers take turns. All throw base::Error.
+// The program as a library for Python: a scene that stays loaded, and pictures in memory. Requests
+// and reports are JSON texts with the keys of the package's stubs (earthshine/__init__.pyi). Calls
+// are serialised. All throw base::Error.
 #pragma once
 
 #include <cstdint>
@@ -16,30 +16,30 @@
 
 namespace earthshine::python {
 
-// Before anything else: the program's notes are not printed, and signals stay Python's.
+// Call first: suppresses the program's notes and leaves signals to Python.
 void be_a_guest();
-// Asks the call in progress to end; it throws Stopped. False: none is asked to.
+// Asks the present call to stop; it throws Stopped. False: cancels the request.
 void ask_to_stop(bool stop);
 struct Stopped {};
 
 [[nodiscard]] std::string version();
 
-// A CCTV camera with its monitor, ready for a picture.
+// A CCTV camera with its monitor, ready for use.
 struct CctvView {
   std::string name;
   degrade::Setup setup;
 };
 
-// A picture with the header that its file has.
+// A picture with the header of its file.
 struct Frame {
   base::ExrFile file;
   std::string report = "{}";
-  std::string error;             // why there is no `cctv`; "": it was not looked for
-  std::optional<CctvView> cctv;  // of the camera that it was taken with
-  double fov_deg = 0.0;          // vertical; 0: not known
+  std::string error;             // why there is no `cctv`; "": not requested
+  std::optional<CctvView> cctv;  // of the picture's camera
+  double fov_deg = 0.0;          // vertical; 0: unknown
 };
 
-// The radiosity of a scene's patches. Arrays have a row a patch.
+// The radiosity of a scene's patches. Arrays have one row per patch.
 struct Light {
   std::string report = "{}";
   std::vector<std::string> groups;
@@ -47,24 +47,24 @@ struct Light {
   std::vector<float> radiosity, direct_lx, indirect_lx;  // patch x group x RGB
   std::vector<double> area_m2, centre_m, normal;         // patch; x 3
   std::vector<std::uint32_t> object;
-  struct Kept;  // the solution itself, and with what settings it was found
+  struct Kept;  // the solution and its settings
   std::shared_ptr<const Kept> kept;
 };
 
 class Session {
  public:
-  // text: of a scene that stands in no file; its meshes are looked for beside `path`.
+  // text: of a scene without a file; its meshes are relative to `path`.
   Session(std::string path, std::optional<std::string> text);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  // Changes to the scene, as --set has them, in place of those before. The next call reads the
-  // scene anew and keeps the ray structure and the solutions that still hold.
+  // Replaces the changes to the scene, in --set syntax. The next call reads the scene again and
+  // keeps the ray structure and the solutions that are still valid.
   void set(std::vector<std::string> overrides);
 
   [[nodiscard]] std::string describe();
-  // How often the scene was read, its rays structured, its light solved and a picture drawn.
+  // Counts of scene reads, ray structures, solves and pictures.
   [[nodiscard]] std::string work() const;
   [[nodiscard]] std::shared_ptr<Frame> render(const std::string& request,
                                               const std::shared_ptr<const Light>& light);
@@ -84,10 +84,10 @@ class Session {
 // An EXR file with all layers, or a tone-mapped PNG.
 void write_frame(const Frame& frame, const std::string& path);
 
-// What the monitor of a CCTV camera shows.
+// The displayed picture of a CCTV camera's monitor.
 struct Monitor {
   degrade::Result result;
-  base::Image twin;  // no channels unless it was asked for
+  base::Image twin;  // no channels unless requested
   degrade::Memory twin_memory;
   std::string report = "{}";
   CctvView view;
@@ -96,7 +96,7 @@ struct Monitor {
                                                      const Monitor* before);
 void write_monitor(const Monitor& monitor, const std::string& path);
 
-// A study into its folder. Returns {"study": study.json, "table": results.csv}.
+// Runs a study into its folder. Returns {"study": study.json, "table": results.csv}.
 [[nodiscard]] std::string run_study(const std::string& request);
 
 }  // namespace earthshine::python

@@ -14,14 +14,14 @@
 namespace earthshine::radiosity {
 namespace {
 
-// Means over what is open of each object; over all of it where nothing is.
+// Means over the open part of each object; over the whole object if nothing is open.
 std::vector<ObjectLight> object_means(const scenes::Scene& scene, const Patches& patches,
                                       const LedgerInput& in) {
   const std::vector<bool> is_explicit = emitter_is_explicit(scene);
   const std::size_t objects = scene.objects.size();
   std::vector<double> open(objects, 0.0);
   for (std::uint32_t i = 0; i < patches.count(); ++i) open[patches.object(i)] += in.area_m2[i];
-  // Per object its area, its weight, illuminance and radiosity.
+  // Per object: area, weight, illuminance and radiosity.
   constexpr std::size_t each = 8;
   std::vector<double> sums(objects * each, 0.0);
   in.factors.shares.add_up(sums, false, [&](std::vector<double>& all) {
@@ -55,7 +55,7 @@ std::vector<ObjectLight> object_means(const scenes::Scene& scene, const Patches&
   return means;
 }
 
-// body(patch, its row here, sums).
+// body(patch, its row on this rank, sums).
 template <class Body>
 std::vector<double> sums_over_patches(const LedgerInput& in, std::size_t each, Body body) {
   const std::size_t first = in.factors.shares.own(in.factors.count()).begin;
@@ -113,7 +113,7 @@ void fill_solution(const scenes::World& world, const FormFactors& factors, bool 
   const auto own = factors.shares.own(patches.count());
   const std::size_t begin = own.begin;
   const CoveredPatches covered(patches, factors.open);
-  // row_of(row, values): of an own row.
+  // row_of(row, values): fills the values of an own row.
   const auto tell = [&](std::vector<float>& values, auto row_of) {
     values.resize(patches.count() * columns);
     base::parallel_chunks(own.end - begin, 4096, [&](std::size_t from, std::size_t to) {
@@ -227,13 +227,13 @@ std::vector<GroupLedger> energy_ledger(const LedgerInput& in, const scenes::Worl
 
 void close_energy(const LedgerInput& in, bool balanced, std::span<double> radiosity,
                   std::span<double> indirect) {
-  // Per column what there is and where it ends.
+  // Per column the emitted light and where it ends.
   const std::vector<double> sums =
       sums_over_patches(in, in.columns * 2, [&](std::size_t i, std::size_t row, double* all) {
         for (std::size_t k = 0; k < in.columns; ++k) {
           const std::size_t at = row * in.columns + k;
           const double rho = in.reflectance[row * 3 + k % 3];
-          // Balanced: in absorption, the sky and black backs. Else by what the solver left.
+          // Balanced: by absorption, sky and black backs. Otherwise by the solver's residual.
           const double end =
               balanced ? (in.factors.kept[i] - rho) * in.indirect[at] +
                              in.radiosity[at] * (in.factors.lost[i] + in.factors.escape[i])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the light on patches to a Solution with its ledger.
+// Combines the light on patches to a Solution with its energy ledger.
 #pragma once
 
 #include <span>
@@ -9,67 +9,66 @@
 
 namespace earthshine::radiosity {
 
-// Per own row of the factors and column, unless said otherwise.
+// Per own row of the factors and column, unless stated otherwise.
 struct PatchLight {
   std::vector<double> reflectance;                           // reflectances(): three a row
   std::vector<double> emitted, direct, indirect, radiosity;  // exitances(); lx, lx, lm/m^2
-  std::span<const Rgb> sky;  // per patch and part of the sky: what of `direct` gather rays bring
+  std::span<const Rgb> sky;  // per patch and part of the sky: share of `direct` by gather rays
 };
 
 [[nodiscard]] std::vector<double> reflectances(const scenes::Scene& scene, const Patches& patches,
                                                base::Shares::Range rows);
-// Of what is carried by form factors.
+// Exitance carried by form factors.
 [[nodiscard]] std::vector<double> exitances(const scenes::Scene& scene,
                                             const scenes::LightGroups& groups,
                                             const Patches& patches, base::Shares::Range rows);
 
-// Of solution.patches and solution.columns. Of the factors only what each patch keeps, loses and
-// lets escape is looked at, and what is open of it. Closes the energy of `light`. Of ranks that
-// divide the factors each gives its own rows' light; all get all of the solution.
+// Fills all members except solution.patches and solution.columns. Of the factors uses the kept,
+// lost and escaped shares and the open shares. Calls close_energy for `light`. Each rank that
+// divides the factors passes the light of its own rows; all receive the complete solution.
 void fill_solution(const scenes::World& world, const FormFactors& factors, bool balanced,
                    PatchLight light, Solution& solution);
 
-// solve() on patches that are cut already, with its form factors, balanced.
+// solve() on given patches, including their balanced form factors.
 [[nodiscard]] Solution solve_keeping(const scenes::World& world, const SolveOptions& options,
                                      Patches patches, const SolveVariant& variant,
                                      FormFactors& factors);
 
-// Where the energy went. With F balanced (form_factors.h) every line adds up to rounding and the
-// solver's residual:
-//   given   = emitted + landed + what sources lose at once (direct.h), where given is the photometric
-//             flux
-//   emitted = sum A M            patches that shine through F
-//   landed  = sum A d E0         direct light, as computed
+// Energy ledger. With balanced F (form_factors.h) every line holds to rounding and the solver's
+// residual:
+//   given    = emitted + landed + losses of sources (direct.h); given is the photometric flux
+//
+//   emitted  = sum A M           surfaces whose exitance F carries
+//   landed   = sum A d E0        direct light, as computed
 //   absorbed = sum A ((a - rho) F B + (d - rho) E0) + sum A B lost
 //   escaped  = sum A B escape
-// d is 1 less what goes on through glass that does not bend light and off flat mirrors, which lands
-// elsewhere. What other mirrors and glass would throw counts as absorbed there, what comes to a
-// second flat mirror as lost by the source.
+// d is 1 minus the share that continues through glass without refraction and off flat mirrors,
+// which lands elsewhere. Light that other mirrors and glass would transmit counts as absorbed
+// there, light at a second flat mirror as lost by the source.
 
 struct LedgerInput {
   const FormFactors& factors;
-  std::span<const double> area_m2;  // what is open of each patch
+  std::span<const double> area_m2;  // open area of each patch
   std::size_t columns = 0;
   std::span<const double> reflectance;  // own rows x 3
-  std::span<const double> emitted;      // all below: own rows x columns; M through F
+  std::span<const double> emitted;      // these: own rows x columns; exitance M through F
   std::span<const double> direct;       // E0
   std::span<const double> indirect;     // F B
   std::span<const double> radiosity;    // B
 };
 
-// Whether the Sun or the Earth shines in each group.
+// Per group: whether the Sun or the Earth emits in it.
 [[nodiscard]] std::vector<bool> sky_groups(const scenes::World& world);
 
 [[nodiscard]] std::vector<GroupLedger> energy_ledger(const LedgerInput& input,
                                                      const scenes::World& world,
                                                      std::span<const SourceFlux> sources);
 
-// Scales each column of B and of F B so that its energy adds up to rounding. Summed with the areas
-// as weights, (1 - rho F) B = S says emitted + landed = absorbed + escaped; what the solver left of
-// that sum, a share of about its residual, is made good by B as a whole, and where the form factors
-// are balanced so is what their rounding left, which a million reflections make a million times
-// larger than rounding. What unbalanced form factors leave is not touched. `radiosity` and
-// `indirect` are the vectors that `input` views.
+// Scales each column of B and of F B so that its energy balance holds to rounding. The
+// area-weighted sum of (1 - rho F) B = S is emitted + landed = absorbed + escaped. The scale
+// removes the solver's defect of this sum, about its residual, and for balanced form factors their
+// rounding errors, which a million reflections amplify a million times. Defects of unbalanced form
+// factors remain. `radiosity` and `indirect` are the vectors that `input` views.
 void close_energy(const LedgerInput& input, bool balanced, std::span<double> radiosity,
                   std::span<double> indirect);
 

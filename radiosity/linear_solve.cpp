@@ -16,7 +16,7 @@ namespace {
 // Of own rows, row-major.
 using Values = std::vector<double>;
 
-// A = 1 - rho F, and loops over vectors whose rows are divided as those of F are.
+// A = 1 - rho F, and loops over vectors distributed like the rows of F.
 class RadiosityOperator {
  public:
   RadiosityOperator(const FormFactors& factors, std::span<const double> reflectance,
@@ -34,7 +34,7 @@ class RadiosityOperator {
   // y = F x.
   void product(const Values& x, Values& y) const { multiply(factors_, x, y, columns_); }
 
-  // body(begin, end, sums): of the values from `begin` to `end`. Returned are the sums of all.
+  // body(begin, end, sums): for values from `begin` to `end`. Returns the sums over all ranks.
   template <class Body>
   std::vector<double> sums(std::size_t each, Body body) const {
     return sums_over_rows(factors_, each, [&](std::size_t begin, std::size_t end, double* sums) {
@@ -42,7 +42,7 @@ class RadiosityOperator {
     });
   }
 
-  // From y = F x to y = x - rho y.
+  // Completes y = F x to y = x - rho y.
   void finish(const Values& x, Values& y, std::size_t begin, std::size_t end) const {
     for (std::size_t k = begin; k < end; k += columns_) {
       const double* const rho = &reflectance_[k / columns_ * period_];
@@ -54,7 +54,7 @@ class RadiosityOperator {
     }
   }
 
-  // left = b - A x. Returns its square.
+  // left = b - A x. Returns its squared norm.
   double rest(const Values& b, const Values& x, Values& left) const {
     left.resize(size());
     product(x, left);
@@ -76,7 +76,7 @@ class RadiosityOperator {
     return norms;
   }
 
-  // Multiplies column c by scale[c]; a scale of 0 leaves its column 0.
+  // Multiplies column c by scale[c]; a column with scale 0 becomes 0.
   void scale_columns(Values& values, const std::vector<double>& scale) const {
     (void)sums(0, [&](std::size_t begin, std::size_t end, const double*) {
       for (std::size_t k = begin; k < end; k += columns_) {
@@ -101,12 +101,12 @@ class Solver {
  public:
   explicit Solver(const RadiosityOperator& system) : system_(system) {}
 
-  // The x of A x = b to a joint relative residual, from b on.
+  // Solves A x = b to a joint relative residual, starting at b.
   [[nodiscard]] Values solve(const Values& b, double wanted) {
     double first = 0.0, bound = 0.0;
     Values x = stabilised(b, wanted, first, bound), left;
     if (system_.rest(b, x, left) <= first) return x;
-    // The iteration can break down; bouncing the light once more a time never does.
+    // BiCGSTAB may break down; Neumann iteration always converges.
     x = b;
     for (int bounce = 0; bounce < 1000; ++bounce, ++iterations) {
       if (system_.rest(b, x, left) <= bound) break;
@@ -115,8 +115,8 @@ class Solver {
     return x;
   }
 
-  // Adds to x what its residual asks for. Returns by how much it changed x: worst over the columns
-  // of max |d| / max |x|.
+  // One step of iterative refinement. Returns the relative change of x: maximum over the columns of
+  // max |d| / max |x|.
   double correct(const Values& b, Values& x) {
     Values left;
     (void)system_.rest(b, x, left);
@@ -144,8 +144,8 @@ class Solver {
   int iterations = 0;
 
  private:
-  // BiCGSTAB (van der Vorst 1992). first: the square of the residual that it began with; bound:
-  // that it was to come below.
+  // BiCGSTAB (van der Vorst 1992). Returns also the initial squared residual (first) and its
+  // required bound (bound).
   Values stabilised(const Values& b, double wanted, double& first, double& bound) {
     constexpr int most_iterations = 300;
     constexpr double rounding = std::numeric_limits<double>::epsilon();
@@ -181,7 +181,7 @@ class Solver {
       square = found[0];
       double beta = found[1] / shadow * (alpha / omega);
       shadow = found[1];
-      if (std::abs(shadow) < rounding * rounding * begun) {  // no direction is left: begin anew
+      if (std::abs(shadow) < rounding * rounding * begun) {  // search direction lost: restart
         begun = shadow = square = system_.rest(b, x, r);
         r0 = r;
         beta = 0.0;
@@ -209,7 +209,7 @@ class Solver {
 constexpr int most_corrections = 8;
 constexpr double still_a_solution = 1e-6;
 
-// b: scaled as the norms tell.
+// b: scaled by the norms.
 LinearSolve solve_scaled(const RadiosityOperator& system, const Values& b,
                          const std::vector<double>& norms, double tolerance) {
   LinearSolve result;
@@ -219,7 +219,7 @@ LinearSolve solve_scaled(const RadiosityOperator& system, const Values& b,
   for (int round = 0; round < most_corrections && result.error > tolerance; ++round) {
     const double previous = result.error;
     result.error = solver.correct(b, x);
-    if (!(result.error < 0.5 * previous)) break;  // rounding is reached
+    if (!(result.error < 0.5 * previous)) break;  // limited by rounding
   }
   Values rest;
   (void)system.rest(b, x, rest);

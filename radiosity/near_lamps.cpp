@@ -16,12 +16,12 @@
 namespace earthshine::radiosity {
 namespace {
 
-// Patches of so many near lamps as they may be: beyond, more of them cost more than they save.
+// Limit of patches: twice the number without lamps plus this; more cost more than they gain.
 constexpr std::size_t most_more = 4096;
-// Of a patch, over its distance from the lamp: illuminance goes as 1 / d^2 there, and what is read
-// between the middles of patches is off by about the square of that. On the payload bay by night,
-// whose lamps stand 25 mm off their housings, 1/4 in place of 1 makes 7 % more patches and a fifth
-// of the mean square of what the solution lacks.
+// Length of a patch over its distance from the lamp: illuminance varies as 1 / d^2, and
+// interpolation between patch centres has an error of about the square of this. On the payload bay
+// by night, with lamps 25 mm off their housings, 1/4 instead of 1 makes 7 % more patches and leaves
+// a fifth of the mean squared residual.
 constexpr double most_length = 0.25;
 
 double half_size(const scenes::Lamp& lamp) {
@@ -29,7 +29,7 @@ double half_size(const scenes::Lamp& lamp) {
   return std::max(lamp.radius_m, 0.5 * edges);
 }
 
-// The point of its surface, if it has one, that is nearest.
+// Nearest point of the lamp's surface, or its position.
 Vec3 nearest_on_lamp(const scenes::Lamp& lamp, const Vec3& point) {
   const Vec3 from_centre = point - lamp.position;
   if (lamp.kind == scenes::LampKind::Rectangle) {
@@ -49,10 +49,10 @@ double radius(const scenes::Lamp& lamp) {
   return scenes::is_wide(lamp.kind) ? scenes::row_of(lamp.kind).radius(lamp) : 0.0;
 }
 
-constexpr double rounding = 1e-6;               // of angles near 0 by their cosines, rad
+constexpr double rounding = 1e-6;               // of small angles computed from cosines, rad
 constexpr double most_beam_share = 1.0 / 32.0;  // of a beam's flux, on one patch
 
-// Of the beam's flux, were nothing in its way.
+// Share of the beam's flux on the patch, without occlusion.
 double share_on(const scenes::Beam& beam, const std::array<Vec3, 4>& corner, const Vec3& normal) {
   const double height = glm::dot(beam.origin - corner[0], normal);
   if (height <= 0.0) return 0.0;
@@ -111,7 +111,7 @@ class LampCuts {
     });
   }
 
-  // How long the patch may be; below `enough` or not at all.
+  // Allowed length of the patch; exact only if below `enough`.
   [[nodiscard]] double allowed(const Patches& patches, std::uint32_t patch, double enough) const {
     const bool several = patches.is_several(patch);
     const auto corner = several ? std::array<Vec3, 4>{} : patches.corners(patch);
@@ -119,7 +119,7 @@ class LampCuts {
     const Vec3 middle = patches.point(patch, 0.5, 0.5);
     double least = std::numeric_limits<double>::infinity();
     for (const scenes::Lamp& lamp : lamps_) {
-      // No point of the patch is farther than that from its middle.
+      // All points of the patch are within this distance of its middle.
       if (glm::length(middle - lamp.position) > 3.0 * enough + radius(lamp)) continue;
       if (!several && glm::dot(lamp.position - middle, normal) <= 0.0) continue;
       const Near near = several ? near_of_several(lamp, patches, patch) : near_of(lamp, corner);
@@ -134,7 +134,7 @@ class LampCuts {
     Vec3 point{0.0};
     double distance_m = std::numeric_limits<double>::infinity();
   };
-  // From one to the other and back is ever nearer, as both are convex.
+  // Alternating projections converge, because both are convex.
   static Near near_of(const scenes::Lamp& lamp, const std::array<Vec3, 4>& corner) {
     Near near;
     Vec3 from = lamp.position;
@@ -150,7 +150,7 @@ class LampCuts {
     }
     return near;
   }
-  // Of those triangles whose side of the patch the lamp is on.
+  // For a patch of several triangles that face the lamp.
   static Near near_of_several(const scenes::Lamp& lamp, const Patches& patches,
                               std::uint32_t patch) {
     const ClusterMembers& members = *patches.clustered;

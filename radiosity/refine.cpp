@@ -13,11 +13,11 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr double share_per_round = 0.5;  // of the squared error, held by the patches that are cut
+constexpr double share_per_round = 0.5;  // of the squared error, in the patches divided per round
 constexpr std::size_t growth_between_solves = 4;
 constexpr int fewest_rays = 64;
 
-// What the rounds of one refinement share.
+// Data of all rounds of one refinement.
 class Refinement {
  public:
   Refinement(const scenes::World& world, const SolveOptions& options)
@@ -45,14 +45,14 @@ class Refinement {
   }
 
  private:
-  // The estimated error of the patches as they are.
+  // Estimated error of the present patches.
   double find_errors() {
     const std::vector<Unevenness> found = variation_.find(refined_.patches, unknown_, light_);
     for (std::size_t k = 0; k < unknown_.size(); ++k) refiner_->of(unknown_[k]) = found[k];
     return std::sqrt(refiner_->total());
   }
 
-  // False when nothing was left to cut.
+  // False if nothing can be divided.
   bool cut_worst(std::size_t max_patches) {
     const std::vector<Cut> cuts =
         refiner_->worst(refined_.patches, {0.0, share_per_round, max_patches});
@@ -61,7 +61,7 @@ class Refinement {
     if (made.patches.count() == refined_.patches.count()) return false;
     unknown_ = refiner_->follow(made.patches, made.parent);
     refined_.patches = std::move(made.patches);
-    // Worth its rays only while most of the cuts are still to come.
+    // Worth its rays only if most divisions are still to come.
     const std::size_t count = refined_.patches.count();
     if (count >= growth_between_solves * solution_.patches.count() && 2 * count <= max_patches) {
       solve_for(refined_.patches);
@@ -71,7 +71,7 @@ class Refinement {
 
   void solve_for(const Patches& patches) {
     SolveVariant variant;
-    variant.know_objects = false;  // where to cut is no matter of means
+    variant.know_objects = false;  // object means do not matter for refinement
     solution_ = solve(world_, cheap_, patches, variant);
     refined_.rays += solution_.report.form_factor_rays + solution_.report.shadow_rays;
     light_ = relative_light(solution_);
@@ -80,8 +80,8 @@ class Refinement {
     std::iota(unknown_.begin(), unknown_.end(), 0U);
   }
 
-  // The coarse cut, finer where it must be: while a light group falls on none of its sample points,
-  // as the Sun may in a room with a small window.
+  // The coarse division, finer while a light group reaches none of its sample points, such as the
+  // Sun in a room with a small window.
   void start() {
     double edge_m = options_.refine.start_edge_m;
     refined_.patches = subdivide_near_lamps(world_.scene, edge_m);
@@ -118,7 +118,7 @@ class Refinement {
 std::size_t most_refined_patches(const scenes::Scene& scene, const SolveOptions& options) {
   const RefineOptions& refine = options.refine;
   if (refine.max_patches == 0 && options.patch_edge_m <= refine.start_edge_m) {
-    return count_patches(scene, options.patch_edge_m);  // no fewer than the coarse cut has
+    return count_patches(scene, options.patch_edge_m);  // at least as many as the coarse division
   }
   const std::size_t budget =
       refine.max_patches > 0 ? refine.max_patches : count_patches(scene, options.patch_edge_m);

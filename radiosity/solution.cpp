@@ -20,8 +20,8 @@ namespace {
 
 constexpr double fewest_rays_met = 256.0;
 
-// Where nothing reflects, shines through F or reads the sky, rays find what bodies cover and whose
-// backs are seen, no light.
+// Rays per patch if nothing reflects, emits through F or reads the sky: they only find covered
+// points and visible backs.
 constexpr int rays_without_light = 256;
 
 class Stopwatch {
@@ -39,7 +39,7 @@ class Stopwatch {
   Clock::time_point last_ = Clock::now();
 };
 
-// Patches that exchange light, directly or by way of others, by the lowest patch of their part.
+// Connected parts of the graph of light exchange, each named by its lowest patch.
 std::vector<std::uint32_t> connected_parts(const FormFactors& f) {
   std::vector<std::uint32_t> parent(f.count());
   std::iota(parent.begin(), parent.end(), 0U);
@@ -64,18 +64,18 @@ std::vector<std::uint32_t> connected_parts(const FormFactors& f) {
   return parent;
 }
 
-// In a part of the scene that is closed and reflects everything, B = S + rho F B has no solution
-// for any S above 0. Throws base::Error (Input) with the materials of such a part. Of own rows,
-// source: x columns, reflectance: x 3.
+// In a closed part of the scene that absorbs nothing, B = S + rho F B has no solution for any S
+// above 0. Throws base::Error (Input) with the materials of such a part. Own rows, source: x
+// columns, reflectance: x 3.
 void check_enclosure(const scenes::Scene& scene, const Patches& patches, const FormFactors& factors,
                      std::span<const double> source, std::span<const double> reflectance,
                      std::size_t columns) {
-  // Only where some material reflects all of what it keeps can a part keep all light.
+  // A part can keep all light only if some material absorbs nothing.
   const std::size_t count = factors.count();
   const auto [begin, end] = factors.shares.own(count);
-  // What rounding leaves of 1 - mirror - diffuse takes nothing.
+  // Rounding of 1 - mirror - diffuse is no absorption.
   constexpr double rounding = 1e-12;
-  std::vector<std::uint8_t> takes(3 * count);  // per patch and colour
+  std::vector<std::uint8_t> takes(3 * count);  // absorbs; per patch and colour
   for (std::size_t i = begin; i < end; ++i) {
     for (std::size_t c = 0; c < 3; ++c) {
       takes[3 * i + c] = factors.kept[i] - reflectance[3 * (i - begin) + c] > rounding;
@@ -110,7 +110,7 @@ void check_enclosure(const scenes::Scene& scene, const Patches& patches, const F
   }
 }
 
-// Whether any surface has a radiosity: reflects, or shines through F.
+// Whether any surface has a radiosity: it reflects, or emits through F.
 bool any_sends(const scenes::Scene& scene, const Patches& patches,
                const std::vector<bool>& is_explicit) {
   const std::vector<Rgb> spread = scenes::bihemispherical_albedos(scene);
@@ -120,7 +120,7 @@ bool any_sends(const scenes::Scene& scene, const Patches& patches,
   });
 }
 
-// Of the rays of exposed patches that met each object, the share that met its black back.
+// Share of the rays of exposed patches to each object that hit its black back.
 std::vector<double> back_shares(const scenes::Scene& scene, const Patches& patches,
                                 const FormFactors& factors) {
   std::vector<double> met = factors.back_hits;
@@ -137,7 +137,7 @@ std::vector<double> back_shares(const scenes::Scene& scene, const Patches& patch
   });
   std::vector<double> share(scene.objects.size(), 0.0);
   for (std::size_t o = 0; o < share.size(); ++o) {
-    // A few stray rays, as past a needle's edge, say nothing.
+    // Few rays, such as those past a needle's edge, are not significant.
     if (met[o] >= fewest_rays_met) share[o] = factors.back_hits[o] / met[o];
   }
   return share;

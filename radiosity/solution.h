@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The radiosity of every patch per light group, and how it was found.
-//   B = M + rho (E0 + F B)      (docs/theory.md; symbols of the project's physics)
+// The radiosity of every patch per light group, with a report.
+//   B = M + rho (E0 + F B)      (docs/theory.md)
 #pragma once
 
 #include <array>
@@ -20,77 +20,77 @@
 
 namespace earthshine::radiosity {
 
-// Adaptive cutting (refine.h). It ends at whichever of the two is reached first.
+// Adaptive division (refine.h). Ends at the first of the two limits.
 struct RefineOptions {
-  bool on = false;              // off: patch_edge_m everywhere
-  double start_edge_m = 0.25;   // no patch is longer
-  std::size_t max_patches = 0;  // 0: as many as patch_edge_m everywhere would make
-  double error = 0.0;           // estimated relative error of the radiosity, root mean square
+  bool on = false;              // false: patch_edge_m everywhere
+  double start_edge_m = 0.25;   // maximum length
+  std::size_t max_patches = 0;  // 0: the number of uniform patches of edge patch_edge_m
+  double error = 0.0;           // estimated relative RMS error of the radiosity
 };
 
 struct SolveOptions {
   double patch_edge_m = 0.25;
   int form_factor_rays = 1024;  // per patch
-  double tolerance = 1e-8;      // of B, relative to each right-hand side's largest (linear_solve.h)
+  double tolerance = 1e-8;      // of B, relative to its maximum (linear_solve.h)
   std::uint64_t seed = 1;
   RefineOptions refine = {};
-  // Of direct light (DirectOptions), at most: shot from each lamp, and looked up on each patch.
+  // Upper limits for direct light (DirectOptions): rays from each lamp, points on each patch.
   int flux_rays = 1 << 16;
   int direct_points = 16;
   double balance = balance_to_rounding;  // column defect at which balancing the factors ends
 };
 
-// The solver's part of the accuracy knobs.
+// The solver's part of the accuracy settings.
 [[nodiscard]] SolveOptions solve_options(const scenes::QualityKnobs& knobs, std::uint64_t seed);
 
 struct RefineRound {
   std::size_t patches = 0;
-  double error = 0.0;  // estimated for these patches, as RefineOptions::error
+  double error = 0.0;  // estimated for these patches, like RefineOptions::error
 };
 
-// Where the energy of one light group went, lm per channel.
+// Energy of one light group, lm per channel.
 //   given = escaped at once + lost at once + emitted + landed
 //   emitted (by patches through F) + landed (directly, as computed) = absorbed + escaped
-// Given is the photometric flux of lamps and emitting surfaces; of the sky only what lands is counted
-// as given. What escapes at once is `escaped_at_once_lm`,
-// `escaped_lm` is what does so after it was reflected or sent by a patch.
+// Given is the photometric flux of lamps and emitting surfaces; the sky counts with its landed
+// light only. `escaped_at_once_lm` escapes directly, `escaped_lm` after reflection or emission by a
+// patch.
 struct GroupLedger {
   std::string name;
   Rgb given_lm{0.0};            // by lamps, emitting surfaces and the sky
-  Rgb escaped_at_once_lm{0.0};  // of it: by rays from lamps and sampled emitters that met nothing
-  Rgb lost_at_once_lm{0.0};     // by those that met black backs
+  Rgb escaped_at_once_lm{0.0};  // directly: rays from lamps and sampled emitters that hit nothing
+  Rgb lost_at_once_lm{0.0};     // directly: rays that hit black backs
   Rgb emitted_lm{0.0};
   Rgb landed_lm{0.0};
   Rgb absorbed_lm{0.0};
   Rgb escaped_lm{0.0};
-  // The worse of both equations' defects, in the worst channel: of the first over given, of the
-  // second over emitted + landed.
+  // The larger defect of both equations in the worst channel, relative to given in the first and to
+  // emitted + landed in the second.
   double imbalance = 0.0;
 };
 
 struct ObjectLight {
   std::string name;
-  double area_m2 = 0.0;     // both sides of sheets, with what bodies cover of it
-  Rgb illuminance_lx{0.0};  // means over the area left open, all groups together
+  double area_m2 = 0.0;     // both sides of sheets, including covered parts
+  Rgb illuminance_lx{0.0};  // means over the open area, all groups together
   Rgb radiosity_lm_m2{0.0};
-  double back_share = 0.0;  // of the rays that met it from exposed patches, those that met its
-                            // black back: near 1 where its winding is wrong
+  double back_share = 0.0;  // share of the rays from exposed patches that hit its black back: near
+                            // 1 if its winding is wrong
 };
 
 struct SolveReport {
   std::size_t patches = 0;
-  std::vector<RefineRound> rounds;  // of refinement, the last one for the patches solved
+  std::vector<RefineRound> rounds;  // of refinement; the last one is for the solved patches
   std::uint64_t refinement_rays = 0;
   std::uint64_t form_factor_rays = 0;
-  int rays_per_patch = 0;  // of them at least, continuations beyond mirrors left out
+  int rays_per_patch = 0;  // minimum over patches, without continuations at mirrors
   std::uint64_t shadow_rays = 0;
-  std::array<SourceCost, scenes::light_kinds> sources_cost{};  // by LightKind; not of a read file
+  std::array<SourceCost, scenes::light_kinds> sources_cost{};  // by LightKind; not stored in files
   std::size_t nonzeros = 0;
   int iterations = 0;
-  double residual = 0.0;      // worst relative residual over the right-hand sides
+  double residual = 0.0;      // largest relative residual over the right-hand sides
   double solver_error = 0.0;  // LinearSolve::error
   BalanceReport balance;
-  double back_share = 0.0;                              // of all rays, those that met black backs
+  double back_share = 0.0;                              // share of all rays that hit black backs
   std::vector<std::pair<std::string, double>> seconds;  // stage, wall seconds
   std::vector<GroupLedger> groups;
   std::vector<SourceFlux> sources;
@@ -100,38 +100,36 @@ struct SolveReport {
 struct Solution {
   Patches patches;
   std::size_t columns = 0;  // 3 * groups
-  // Per patch and column. `radiosity` leaves out the exitance of surfaces whose first bounce is
-  // explicit (emitter_is_explicit), so that gather rays that meet them do not count that light
-  // twice.
-  std::vector<float> radiosity;           // lm/m^2
-  std::vector<float> indirect_radiosity;  // without explicit first bounce: rho (E - E0 explicit)
+  // Per patch and column. `radiosity` excludes the exitance of surfaces sampled explicitly
+  // (emitter_is_explicit), so that gather rays do not count this light twice.
+  std::vector<float> radiosity;               // lm/m^2
+  std::vector<float> indirect_radiosity;      // without direct light: rho (E - E0 explicit)
   std::vector<float> direct_lx, indirect_lx;  // E0 and F B
   SolveReport report;
 };
 
-// Told how the scene is cut before its form factors are cast; may throw.
+// Called with the patches before form factors are cast; may throw.
 using PatchListener = std::function<void(const Patches& patches)>;
 
-// With no light group there is nothing to solve: patches are cut, no rays are cast.
+// Without light groups only divides patches and casts no rays.
 [[nodiscard]] Solution solve(const scenes::World& world, const SolveOptions& options,
                              const PatchListener& listen = {});
 
-// In what a solve differs from the one with the same options.
+// Differences from a solve with the same options.
 struct SolveVariant {
-  std::uint32_t replicate = 0;  // of the form factors: each number is an independent set of rays
-  DirectOptions direct = {};    // its seed 0: that of the options
+  std::uint32_t replicate = 0;  // of the form factors: each number gives an independent set of rays
+  DirectOptions direct = {};    // its seed 0: the options' seed
   bool know_objects = true;     // FormFactorOptions::know_objects
 };
-// On patches that are cut already; options.patch_edge_m and options.refine are not looked at.
+// On given patches; ignores options.patch_edge_m and options.refine.
 [[nodiscard]] Solution solve(const scenes::World& world, const SolveOptions& options,
                              Patches patches, const SolveVariant& variant = {});
 
-// What there is of a solution that was not come to: no light. Pictures that read it find all light
-// by the paths that look for what a solution lacks.
+// A solution without light. Pictures then sample all light as residual.
 [[nodiscard]] Solution unsolved(const scenes::LightGroups& groups);
 
-// Whether there is any light to solve for. The ambient term is no source: it lights what the camera
-// sees and bounces nowhere.
+// Whether there is light to solve for. The ambient term is no source: it adds to visible surfaces
+// and is not reflected.
 [[nodiscard]] bool is_lit(const scenes::Effects& effects);
 
 }  // namespace earthshine::radiosity

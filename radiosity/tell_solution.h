@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A solution from the rank that made it to those that read it.
+// Broadcasts a solution from the rank that computed it.
 #pragma once
 
 #include "base/ranks/shares.h"
@@ -7,11 +7,11 @@
 
 namespace earthshine::radiosity {
 
-// Of ranks that divide the form factors the first alone knows what the report says of direct light
-// and of where it went: gives it to the others.
+// Of ranks that divide the form factors only the first one has the report on direct light and the
+// ledger: broadcasts them.
 void tell_report(const base::Shares& shares, SolveReport& report);
 
-// The same with the four values of each patch, where the first alone has made them. The others have
+// Also broadcasts the four values of each patch, if only the first rank has them. The others have
 // the patches and the rest of the report.
 void tell_solution(const base::Shares& shares, Solution& solution);
 

@@ -19,7 +19,7 @@ namespace {
 using scenes::RayPacket;
 
 constexpr double fewest_points = 16.0, most_points = 4096.0;  // per patch, of direct light
-constexpr std::size_t indirect_points = 4;                    // one in each quarter
+constexpr std::size_t indirect_points = 4;                    // one per quarter
 constexpr std::size_t wide_source_points = 4;  // per point and set; 1 for the Sun and small lamps
 
 // Sums per point, set and group.
@@ -28,7 +28,7 @@ class Looks {
   Looks(std::size_t points, std::size_t groups)
       : groups_(groups), where_(points), sum_(points * 2 * groups, 0.0) {}
 
-  // The point's place in the patch: x along s, y along t, from 0 to 1.
+  // Sets the point's position in the patch: x along s, y along t, from 0 to 1.
   void place(std::size_t point, double x, double y) { where_[point] = {x, y}; }
   double& at(std::size_t point, std::size_t set, std::size_t group) {
     return sum_[(point * 2 + set) * groups_ + group];
@@ -36,8 +36,8 @@ class Looks {
 
   [[nodiscard]] std::size_t points() const { return where_.size(); }
 
-  // Adds a group's variance between the points, and between the halves; nothing where the variance
-  // is not above its own noise.
+  // Adds a group's variance between the points, and between the halves; 0 unless the variance
+  // exceeds its own noise.
   void add_to(Unevenness& sum, std::size_t group) {
     const auto n = static_cast<double>(where_.size());
     std::array<double, 2> mean{}, s_step{}, t_step{};  // half the difference between halves
@@ -159,7 +159,7 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
     const base::Key key(options_.seed, base::Stream::Refinement, identity(patches, patch));
     RayPacket packet;
     scenes::HitPacket hits;
-    std::array<Vec3, RayPacket::width> local;  // the same at all points
+    std::array<Vec3, RayPacket::width> local;  // equal at all points
     const double weight = rho / static_cast<double>(gather_directions);
     for (std::size_t set = 0; set < 2; ++set) {
       const base::SobolOwen4 toward(key.with(0xFFFF0000ULL + set));

@@ -31,7 +31,7 @@ CoincidentFaces::CoincidentFaces(const Scene& scene) {
   const auto material = [&](std::uint32_t t) -> const Material& {
     return scene.materials[scene.triangles[t].material];
   };
-  // Of a pair of which one is glass, that one: the other is over both of its sides.
+  // The glass face of a pair, if one is glass: the other face covers both of its sides.
   const auto glass_of = [&](const FacePair& pair) {
     if (material(pair.a).lets_light_through()) return pair.a;
     return material(pair.b).lets_light_through() ? pair.b : no_glass;
@@ -72,7 +72,7 @@ std::optional<CoincidentFaces::Met> CoincidentFaces::first_met(std::uint32_t tri
                                                                const Vec3& at,
                                                                const Vec3& direction) const {
   if (number_[triangle] == none) return std::nullopt;
-  // Each step goes to a face nearer to where the light comes from.
+  // Each step goes to a face nearer to the light's origin.
   const auto step = [&](std::uint32_t from) -> std::optional<Met> {
     const Face& now = faces_[number_[from]];
     const bool front = glm::dot(direction, now.normal) < 0.0;
@@ -87,15 +87,15 @@ std::optional<CoincidentFaces::Met> CoincidentFaces::first_met(std::uint32_t tri
     return std::nullopt;
   };
   std::optional<Met> met = step(triangle);
-  if (!met) return std::nullopt;  // as nearly every ray: nothing is kept of its way
+  if (!met) return std::nullopt;  // almost every ray: no path is stored
   std::vector<Met> way{{triangle, 0.0, 0.0, false}};
   for (; met; met = step(way.back().triangle)) {
     const auto seen = std::find_if(way.begin(), way.end(), [&](const Met& before) {
       return before.triangle == met->triangle;
     });
     if (seen != way.end()) {
-      // A ring, as two sides of a sheet have with another sheet: one of it is met, or no light
-      // would be. The last of the scene, whoever asks.
+      // A cycle, as between the two sides of one sheet and another sheet. One of its faces must be
+      // hit, or no light would be. The last one in the scene is the same for every caller.
       *seen = *met;
       way.back() = *std::max_element(
           seen, way.end(), [](const Met& a, const Met& b) { return a.triangle < b.triangle; });
@@ -110,7 +110,7 @@ bool CoincidentFaces::covers(std::uint32_t triangle, bool front, const Vec3& at)
   if (!is_covered(triangle, front)) return false;
   const Face& face = faces_[number_[triangle]];
   const auto [u, v] = barycentric(at, face.corner, face.edge1, face.edge2);
-  if (!holds(u, v)) return false;  // beside it, as on the other half of a parallelogram
+  if (!holds(u, v)) return false;  // outside it, as on the other half of a parallelogram
   const bool between = std::any_of(
       others_.begin() + face.first, others_.begin() + face.end, [&](const Other& other) {
         if (!other.hides_both || other.before != front) return false;

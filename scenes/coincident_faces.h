@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Of faces that lie on each other, the one that is met first. Holds copies of what it needs, not
-// the scene.
+// The face that a ray hits first among faces that lie on each other. Copies its data from the
+// scene.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace earthshine::scenes {
 class CoincidentFaces {
  public:
   CoincidentFaces() = default;
-  explicit CoincidentFaces(const Scene& scene);  // by scene.coincident
+  explicit CoincidentFaces(const Scene& scene);  // from scene.coincident
 
   [[nodiscard]] bool empty() const { return faces_.empty(); }
 
@@ -23,8 +23,8 @@ class CoincidentFaces {
     double u, v;  // weights of its second and third vertex
     bool front;
   };
-  // Of the faces that lie where a triangle was met, the one that is before all others on the side
-  // that light comes from, along `direction`; none: the triangle itself.
+  // Of the faces that overlap the hit triangle at a point, the one in front of all others for light
+  // along `direction`. No value: the triangle itself.
   [[nodiscard]] std::optional<Met> first_met(std::uint32_t triangle, const Vec3& at,
                                              const Vec3& direction) const;
 
@@ -33,7 +33,7 @@ class CoincidentFaces {
     return !empty() && number_[triangle] != none &&
            faces_[number_[triangle]].covered[front ? 0 : 1];
   }
-  // Whether it does so at a point, which lies over that side.
+  // Whether another face covers the point, which lies over that side.
   [[nodiscard]] bool covers(std::uint32_t triangle, bool front, const Vec3& at) const;
 
  private:
@@ -46,10 +46,10 @@ class CoincidentFaces {
   };
   struct Other {
     std::uint32_t face;
-    bool before;      // it lies on the front
-    bool hides_both;  // and so does this face on its front: no light gets in between
+    bool before;      // it lies on the front side
+    bool hides_both;  // and this face lies on the other's front: no light gets in between
   };
-  std::vector<std::uint32_t> number_;  // per triangle its face, or none
+  std::vector<std::uint32_t> number_;  // face of each triangle, or none
   std::vector<Face> faces_;
   std::vector<Other> others_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh as its file (or a shape) has it: polygons in the file's own coordinates, before any
-// transform.
+// A mesh as read from its file (or made by a shape): polygons in the file's own coordinates, before
+// any transform.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace earthshine::scenes {
 inline constexpr std::uint32_t no_index = 0xFFFFFFFFU;
 inline constexpr std::size_t max_mesh_bytes = std::size_t{512} << 20;
 inline constexpr std::size_t max_polygon_corners = 1024;
-// Larger coordinates are slips; their squares would still be exact enough, their scene would not.
+// Larger coordinates are typing errors. Their squares would be accurate, the scene would not.
 inline constexpr double largest_coordinate = 1e15;
 
 struct MeshPolygon {
@@ -26,24 +26,23 @@ struct MeshPolygon {
   std::uint32_t count = 0;
   std::uint32_t part_set = 0;         // into Mesh::part_sets
   std::uint32_t material = no_index;  // into Mesh::material_names
-  std::uint32_t line = 0;             // of the file; 0: not known
+  std::uint32_t line = 0;             // of the file; 0: unknown
 };
 
-// A material library that an OBJ file names. It is read when a material is looked for in vain in
-// the scene.
+// A material library that an OBJ file names. It is read when the scene lacks a material.
 struct MaterialLibrary {
   std::string named;
   base::Location where;
 };
 
-// What Mesh::unused calls lamps and cameras, which objects take over when they ask for them.
+// Entries of Mesh::unused for lamps and cameras. An object can import them.
 inline constexpr const char* lamps_of_file = "lights";
 inline constexpr const char* cameras_of_file = "cameras";
-// Beside these, what nobody can take over.
+// Lamps and cameras that no object can import.
 inline constexpr const char* unknown_lamps_of_file = "lights of an unknown type";
 inline constexpr const char* flat_cameras_of_file = "orthographic cameras";
 
-// A lamp or a camera among the faces, in the file's own coordinates; names may be empty or
+// A lamp or a camera in the mesh file, in the file's own coordinates. Names may be empty or
 // repeated.
 struct MeshLamp {
   Lamp lamp;
@@ -54,46 +53,47 @@ struct MeshCamera {
   std::uint32_t part_set = 0;
 };
 
-// What the normals of vertices are for: to tell fronts from backs, where a faulty one is none, or
-// to round the surface by, where it is an error.
+// Use of vertex normals. Sides: they identify the front; faulty normals are ignored. Shape: they
+// define a curved surface; faulty normals are an error.
 enum class VertexNormals { Sides, Shape };
 
-// How OBJ, PLY and glTF files call them, in Mesh::unused.
+// Names of normals in OBJ, PLY and glTF files, for Mesh::unused.
 inline constexpr std::string_view normals_of_file[] = {"vn", "nx", "ny", "nz", "NORMAL"};
 
 struct Mesh {
   std::filesystem::path path;    // empty for a shape
-  std::optional<double> metres;  // of its unit of length; nothing: the scene's unit
-  bool is_y_up = false;          // by its format; false: the format does not say
-  bool is_own = false;           // this program wrote it, and turned z up to y up
+  std::optional<double> metres;  // metres per unit of length; no value: the scene's unit
+  bool is_y_up = false;          // set by the format; false: the format does not define it
+  bool is_own = false;           // written by this program, which rotated z up to y up
   std::vector<Vec3> vertices;
   std::vector<std::uint32_t> indices;     // counter-clockwise seen from the front
   std::vector<glm::vec2> uv;              // texture coordinates, v down from the upper edge
   std::vector<std::uint32_t> uv_indices;  // into uv, one for each of `indices`; no_index: none.
                                           // Empty: no corner has any
-  // Beside uv, and as long, or empty: a second set, and what multiplies the diffuse colour.
+  // Each as long as uv, or empty: second texture coordinates, and factors on the diffuse colour.
   std::vector<glm::vec2> second_uv;
   std::vector<glm::vec3> colours;
-  std::vector<glm::vec3> normals;             // of the surface; 0 where the file's is faulty
+  std::vector<glm::vec3> normals;             // of the surface; 0 where the file's normal is faulty
   std::vector<std::uint32_t> normal_indices;  // as uv_indices
   std::vector<MeshPolygon> polygons;
   std::vector<std::string> part_names;                // groups, objects, nodes, meshes, solids
   std::vector<std::vector<std::uint32_t>> part_sets;  // a polygon may belong to several
   std::vector<std::string> material_names;
-  std::vector<Material> materials;              // those that the file itself or a library defines
-  std::vector<base::Location> material_places;  // of each of these
-  std::vector<std::vector<std::string>> material_lacks;  // what of each is not used, though the
-      // picture would change by it; may be shorter
-  // Materials that the file has in another colour under the name on the right.
+  std::vector<Material> materials;                       // defined by the file or a library
+  std::vector<base::Location> material_places;           // one for each material
+  std::vector<std::vector<std::string>> material_lacks;  // properties of each material that are
+                                                         // ignored although they change the
+                                                         // picture; may be shorter
+  // Colour variants of the file's materials: variant name to original name.
   std::map<std::string, std::string> variant_of;
   std::vector<MaterialLibrary> libraries;
-  std::vector<std::filesystem::path> files;  // that it was read from, or that it names
+  std::vector<std::filesystem::path> files;  // files that were read or are referenced
   std::vector<MeshLamp> lamps;
   std::vector<MeshCamera> cameras;
   std::vector<std::string> warnings;
-  // What the file holds besides that nothing here reads, and how often.
+  // Contents of the file that are not read, with their counts.
   std::map<std::string, std::size_t> unused;
-  // What of it would change the picture: of materials only what some object wears.
+  // Unread contents that would change the picture. Materials count only if an object uses them.
   std::map<std::string, std::size_t> lacking;
 };
 
@@ -111,8 +111,8 @@ void add_polygon(Mesh& mesh, const Indices& corners, std::uint32_t part_set, std
   mesh.polygons.push_back(polygon);
 }
 
-// Names to running numbers: the number of `name` in `names`, appended if it is new.
-// `known` is an index of names; both belong to the caller.
+// Index of `name` in `names`; appends new names. `known` maps names to indices; the caller owns
+// both.
 template <class Map>
 [[nodiscard]] std::uint32_t number_of(const std::string& name, std::vector<std::string>& names,
                                       Map& known) {

@@ -68,7 +68,7 @@ void fill(const RayPacket& rays, RTCRay8& ray) {
   }
 }
 
-// For each count of live lanes, the mask that Embree wants.
+// Embree's lane mask for each count of active lanes.
 constexpr auto lane_masks() {
   std::array<std::array<int, 8>, 9> masks{};
   for (std::size_t count = 0; count <= 8; ++count) {
@@ -87,12 +87,12 @@ std::uint32_t hidden_bits(const RTCRay8& rays, std::size_t count) {
   return bits;
 }
 
-// Times as far as the farthest surface: rays from there start at the scene's bounds.
+// Factor on the distance of the farthest surface: rays from beyond start at the scene's bounds.
 constexpr double far_extents = 2.0;
-// Of a point's distance from the centre: a few roundings of its coordinates.
+// Share of a point's distance from the centre: a few roundings of its coordinates.
 constexpr double point_offset = 0x1p-21;
-// The point of those weights, off the edges by their rounding, which could put it behind a neighbour
-// and let light leak from a closed room.
+// Point with these weights, moved off the edges by their rounding error, which could put it behind
+// a neighbour and let light leak from a closed room.
 Vec3 inside(const Corners& p, const Barycentric& at) {
   constexpr double rounding = 0x1p-22;
   const double u = std::clamp(at.u, rounding, 1.0 - 2.0 * rounding),
@@ -100,7 +100,7 @@ Vec3 inside(const Corners& p, const Barycentric& at) {
   return (1.0 - u - v) * p.a + u * p.b + v * p.c;
 }
 
-// Flatter than this rays keep the point that the ray structure found.
+// Cosine of incidence below which rays keep Embree's hit point.
 constexpr double least_fall = 1e-6;
 
 }  // namespace
@@ -121,9 +121,9 @@ RayQuery::RayQuery(const Scene& source)
     own_vertices = object.instance->first_vertex;
     break;
   }
-  // Measured while Embree 3.13 builds at its highest quality; a third of it stays.
+  // Measured peak while Embree 3.13 builds at its highest quality; a third remains afterwards.
   constexpr std::uint64_t bytes_per_triangle = 450;
-  std::vector<bool> is_original(source.objects.size(), false);  // built once more, for instances
+  std::vector<bool> is_original(source.objects.size(), false);  // stored once more for instances
   for (const Object& object : source.objects) {
     if (object.instance) is_original[object.instance->object] = true;
   }
@@ -161,7 +161,7 @@ double RayQuery::way_to_bounds_m(const Vec3& from, const Vec3& direction) const 
   for (int axis = 0; axis < 3; ++axis) {
     const double low = (bounds_.low[axis] - margin - from[axis]) / direction[axis],
                  high = (bounds_.high[axis] + margin - from[axis]) / direction[axis];
-    // Not a number where the ray runs in the plane of a face: no bound.
+    // NaN if the ray lies in the plane of a face: no bound.
     if (low < high || high < low) {
       first = std::max(first, std::min(low, high));
       last = std::min(last, std::max(low, high));
@@ -268,7 +268,7 @@ void RayQuery::light_shares(const RayPacket& rays, const std::uint32_t* mirrors,
     origin[k] = centre() + Vec3(rays.origin_x[k], rays.origin_y[k], rays.origin_z[k]);
     direction[k] = Vec3(rays.direction_x[k], rays.direction_y[k], rays.direction_z[k]);
     if (mirrors[k] == no_mirror) continue;
-    // Only what is before the mirror stands in the way.
+    // Only occluders in front of the mirror count.
     const FlatMirror& mirror = specular_paths_.mirrors()[mirrors[k]];
     const double fall = -glm::dot(direction[k], mirror.normal);
     const double to_mirror =

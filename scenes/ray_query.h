@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays against the scene's triangles. The only user of Embree (3.13 and 4.x).
+// Ray queries on the scene's triangles. The only user of Embree (3.13 and 4.x).
 #pragma once
 
 #include <algorithm>
@@ -18,14 +18,14 @@ namespace earthshine::scenes {
 
 inline constexpr std::uint32_t no_triangle = 0xFFFFFFFFU;
 
-// Up to 8 rays side by side, in the layout that the vector units want: single precision about
-// RayQuery::centre(). RayQuery::set fills a lane from the scene's own coordinates.
+// Up to 8 rays in SIMD layout, single precision, relative to RayQuery::centre(). RayQuery::set
+// fills a lane from scene coordinates.
 struct alignas(32) RayPacket {
   static constexpr std::size_t width = 8;
   float origin_x[width], origin_y[width], origin_z[width];
   float direction_x[width], direction_y[width], direction_z[width];
   float t_max[width];
-  float start[width] = {};  // m from where the caller has the origin (RayQuery::set)
+  float start[width] = {};  // distance from the caller's origin to the start, m (RayQuery::set)
 };
 
 // Hits of a packet. (u, v) are the weights of the triangle's second and third vertex; t is the
@@ -45,16 +45,16 @@ struct Hit {
 
 class RayQuery {
  public:
-  // Builds the acceleration structure. The scene's triangles are copied, centred, in single
-  // precision. Throws base::Error (Work) if Embree reports an error.
+  // Builds the acceleration structure from a centred single-precision copy of the triangles. Throws
+  // base::Error (Work) if Embree reports an error.
   explicit RayQuery(const Scene& scene);
   ~RayQuery();
   RayQuery(RayQuery&&) noexcept;
   RayQuery& operator=(RayQuery&&) noexcept;
 
-  // origin in metres in the scene's frame, direction of unit length, t_max in metres. The centre is
-  // taken off in double precision: a scene far from its origin loses nothing. A ray that comes
-  // from far outside the scene starts where it enters the scene's bounds.
+  // origin in metres in the scene's frame, direction of unit length, t_max in metres. Subtracts the
+  // centre in double precision, so that scenes far from their origin lose no accuracy. A ray from
+  // far outside the scene starts where it enters the scene's bounds.
   void set(RayPacket& rays, std::size_t lane, const Vec3& origin, const Vec3& direction,
            double t_max_m = std::numeric_limits<double>::infinity()) const {
     Vec3 from = origin - centre();
@@ -74,61 +74,63 @@ class RayQuery {
     rays.start[lane] = static_cast<float>(start);
   }
 
-  // Nearest hit of the first `count` rays (at most 8); of faces that lie on each other the one that
-  // is before the others. Safe on many threads.
+  // Nearest hits of the first `count` rays (at most 8). Where faces lie on each other, returns the
+  // front one. Thread-safe.
   void closest(const RayPacket& rays, std::size_t count, HitPacket& hits) const;
   [[nodiscard]] Hit closest(const Vec3& origin, const Vec3& direction) const;
 
-  // Bit k is set if ray k meets anything before t_max.
+  // Bit k is set if ray k hits anything before t_max.
   [[nodiscard]] std::uint32_t occluded(const RayPacket& rays, std::size_t count) const;
 
-  // Shadow rays, from a surface toward a source at t_max: of its light, the share that arrives.
-  // mirrors: per ray the flat mirror of specular_paths() that the light comes by, t_max the whole way; or
-  // no_mirror. Glass that does not bend light lets its share through, all else casts a shadow.
+  // Shadow rays from a surface to a source at t_max: share of its light that arrives. mirrors: per
+  // ray the flat mirror of specular_paths() that reflects the light, or no_mirror; t_max is the
+  // length of the whole path. Glass that does not refract transmits its share; all other surfaces
+  // occlude.
   void light_shares(const RayPacket& rays, const std::uint32_t* mirrors, std::size_t count,
                     Rgb* shares) const;
   [[nodiscard]] const SpecularPaths& specular_paths() const { return specular_paths_; }
   [[nodiscard]] const CoincidentFaces& coincident() const { return coincident_; }
 
-  // How far off a triangle, along its normal, rays start that leave it, m.
+  // Distance along the normal at which rays that leave a triangle start, m.
   [[nodiscard]] double offset_m(std::uint32_t triangle) const { return offsets_.of(triangle); }
   [[nodiscard]] const SurfaceOffsets& offsets() const { return offsets_; }
-  // The same of a point that lies on no surface, such as a lamp's.
+  // Offset for a point that lies on no surface, such as a lamp's position, m.
   [[nodiscard]] double offset_at_m(const Vec3& point) const;
 
-  // The error of a distance t that a ray finds, m: single precision, from where the ray enters the
-  // scene's bounds.
+  // Error of a hit distance t, m: single precision, from the point where the ray enters the scene's
+  // bounds.
   [[nodiscard]] double distance_error_m(double t) const { return 0x1p-22 * std::min(t, far_m_); }
 
-  // What packets' origins are relative to.
+  // Origin of the packets' coordinates.
   [[nodiscard]] const Vec3& centre() const { return offsets_.centre(); }
-  // What coordinates in single precision may be relative to that serve a camera: its position, or
-  // centre() where the camera is far outside the scene.
+  // Origin for a camera's single-precision coordinates: its position, or centre() if the camera is
+  // far outside the scene.
   [[nodiscard]] const Vec3& near(const Vec3& camera) const {
     return is_far(camera - centre()) ? centre() : camera;
   }
 
  private:
   struct Embree;
-  // A point about the centre, several times as far from it as any surface.
+  // Whether a point (relative to the centre) is several times farther away than any surface.
   [[nodiscard]] bool is_far(const Vec3& point) const {
     return std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)}) > far_m_;
   }
-  // Along a ray from there: to the bounds, or to where it passes the centre if it misses them.
+  // Distance along a ray to the scene's bounds, or to the point nearest to the centre if the ray
+  // misses them, m.
   [[nodiscard]] double way_to_bounds_m(const Vec3& from, const Vec3& direction) const;
 
   std::unique_ptr<Embree> embree_;
   SurfaceOffsets offsets_;
   SpecularPaths specular_paths_;
   CoincidentFaces coincident_;
-  Box bounds_;  // about the centre
+  Box bounds_;  // relative to the centre
   double far_m_ = 0.0;
 };
 
-// Point of a hit, found from the triangle's corners: more exact than origin + t direction.
+// Hit point from the triangle's corners: more accurate than origin + t direction.
 [[nodiscard]] Vec3 hit_position(const Scene& scene, const Hit& hit);
-// The same of a ray whose origin is known in double precision, where it meets the triangle's plane:
-// on a triangle of kilometres (u, v) are exact to a millimetre.
+// Hit point as the intersection of the ray, with its origin in double precision, and the triangle's
+// plane. For triangles of kilometres (u, v) are accurate to a millimetre only.
 [[nodiscard]] Vec3 hit_position(const Scene& scene, const Hit& hit, const Vec3& origin,
                                 const Vec3& direction);
 

@@ -20,7 +20,7 @@ bool RayQuery::Embree::is_hole(const RTCFilterFunctionNArguments* found, unsigne
                                          double(RTCHitN_v(found->hit, found->N, k)));
 }
 
-// Rays go on through the holes of opacity masks.
+// Filter for all rays: rays pass the holes of opacity masks.
 void RayQuery::Embree::pass_holes(const RTCFilterFunctionNArguments* found) {
   const auto& embree = *static_cast<const Embree*>(found->geometryUserPtr);
   for (unsigned k = 0; k < found->N; ++k) {
@@ -29,7 +29,7 @@ void RayQuery::Embree::pass_holes(const RTCFilterFunctionNArguments* found) {
   }
 }
 
-// So do shadow rays, and through what may let light through or turn it.
+// Filter for shadow rays: they pass holes, and surfaces that may transmit or reflect light.
 void RayQuery::Embree::pass_shadow(const RTCFilterFunctionNArguments* found) {
   const auto& embree = *static_cast<const Embree*>(found->geometryUserPtr);
   auto& shadow = *static_cast<ShadowContext*>(found->context);
@@ -46,7 +46,7 @@ void RayQuery::Embree::pass_shadow(const RTCFilterFunctionNArguments* found) {
 
 RTCScene RayQuery::Embree::new_scene() const {
   RTCScene made = rtcNewScene(device);
-  // Robust: without it two in ten million rays slip through shared edges of a closed room.
+  // Robust mode: without it two of ten million rays slip through shared edges of a closed room.
   rtcSetSceneFlags(made, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(made, RTC_BUILD_QUALITY_HIGH);
   return made;
@@ -80,7 +80,7 @@ void RayQuery::Embree::add_triangles(RTCScene to, const Scene& source, std::size
   rtcReleaseGeometry(geometry);
 }
 
-// Each about the middle of its original, so that single precision serves its size.
+// Each original is centred on its own middle, so that single precision suffices for its size.
 void RayQuery::Embree::add_instances(const Scene& source, const Vec3& centre) {
   struct Original {
     RTCScene scene = nullptr;
@@ -110,7 +110,7 @@ void RayQuery::Embree::add_instances(const Scene& source, const Vec3& centre) {
       rtcCommitScene(original.scene);
     }
     const Vec3 offset = instance.linear * original.centre + instance.offset_m - centre;
-    std::array<float, 12> matrix;  // three columns and the offset
+    std::array<float, 12> matrix;  // three columns and the translation
     std::size_t entry = 0;
     for (int column = 0; column < 4; ++column) {
       const Vec3& from = column < 3 ? instance.linear[column] : offset;

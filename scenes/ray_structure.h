@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What RayQuery keeps of Embree (3.13 and 4.x), and how it is built. Of these files and
-// ray_query.cpp alone.
+// RayQuery's Embree data (3.13 and 4.x) and how it is built. Used by these files and ray_query.cpp
+// only.
 #pragma once
 
-// Embree 3 and 4 differ in the header's folder and in how a query is called; everything else here
-// is common.
+// Embree 3 and 4 differ in the header's folder and in the query functions; the rest is common.
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
 #define EARTHSHINE_EMBREE_MAJOR 4
@@ -31,19 +30,19 @@ using EmbreeContext = RTCRayQueryContext;
 using EmbreeContext = RTCIntersectContext;
 #endif
 
-// Of shadow rays: what goes on from `specular_paths` stops none of them, but is reported.
+// Context of shadow rays: surfaces in `specular_paths` do not stop them but are reported.
 struct ShadowContext : EmbreeContext {
   const SpecularPaths* specular_paths = nullptr;  // null: all surfaces stop rays
-  std::uint32_t met = 0;                          // bit k: ray k met one that does not
+  std::uint32_t met = 0;                          // bit k: ray k hit one of these
 };
 
 struct RayQuery::Embree {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   OpacityMasks masks;
-  bool any_specular_paths = false;  // some faces let shadow rays go on
-  // Instances have the structure of their original's triangles, once; by the number of their
-  // geometry in the scene, of which the first is that of all other triangles.
+  bool any_specular_paths = false;  // some faces let shadow rays continue
+  // Instances share the Embree scene of their original, which is built once. Indexed by the
+  // geometry number in the top scene; the first geometry holds all other triangles.
   struct Placed {
     std::uint32_t first_triangle = 0;
     glm::mat3 to_original{1.0F};  // of directions
@@ -66,7 +65,7 @@ struct RayQuery::Embree {
   }
   [[nodiscard]] bool is_hole(const RTCFilterFunctionNArguments* found, unsigned k,
                              std::uint32_t triangle) const;
-  // Whether a ray comes from the front. Embree has normals as the original has them.
+  // Whether a ray comes from the front. Embree returns normals in the original's frame.
   [[nodiscard]] bool is_front(unsigned instance, const glm::vec3& normal, glm::vec3 way) const {
     if (instance != RTC_INVALID_GEOMETRY_ID) way = placed[instance].to_original * way;
     return normal.x * way.x + normal.y * way.y + normal.z * way.z < 0.0F;
@@ -76,7 +75,7 @@ struct RayQuery::Embree {
   static void pass_shadow(const RTCFilterFunctionNArguments* found);
   [[noreturn]] static void fail(const std::string& what);
   [[nodiscard]] RTCScene new_scene() const;
-  // Triangles first .. first + count - 1 and vertices low .. high - 1, about `centre`.
+  // Adds triangles first .. first + count - 1 and vertices low .. high - 1, relative to `centre`.
   void add_triangles(RTCScene to, const Scene& source, std::size_t first, std::size_t count,
                      std::size_t low, std::size_t high, const Vec3& centre);
   void add_instances(const Scene& source, const Vec3& centre);

@@ -30,14 +30,14 @@ Rgb ShadowPath::follow(Hit hit) {
   return Rgb(0.0);
 }
 
-// Off the surface that was met, on its front or back.
+// Restarts off the surface that was hit, on its front or back.
 void ShadowPath::leave(const Hit& hit, const SpecularPaths::Face& face, bool on_front) {
   origin_ += hit.t * direction_;
   const double off_m = (on_front ? 1.0 : -1.0) * query_.offset_m(hit.triangle);
   origin_ += (off_m - face.height_m(origin_)) * face.normal;
 }
 
-// At the end of the way: beside its line a ray would meet a slanted source before it is there.
+// At the end of the path: a ray beside the exact line would hit a slanted source too early.
 void ShadowPath::aim_again() {
   if (!std::isfinite(left_m_)) return;
   const Vec3 way = end_ - origin_;

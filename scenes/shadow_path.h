@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// RayQuery's shadow rays: through glass that does not bend light, off flat mirrors.
+// Shadow rays of RayQuery that pass glass without refraction and reflect in flat mirrors.
 #pragma once
 
 #include "scenes/ray_query.h"
 
 namespace earthshine::scenes {
 
-// Goes on along one ray from its first hit, toward the source.
+// Continues one ray from its first hit toward the source.
 class ShadowPath {
  public:
-  // reach_m: along all of the way, to short of the source; mirror: that throws its light, or
-  // no_mirror.
+  // reach_m: length of the whole path, ending just before the source. mirror: the mirror that
+  // reflects its light, or no_mirror.
   ShadowPath(const RayQuery& query, const Vec3& origin, const Vec3& direction, double reach_m,
              std::uint32_t mirror)
       : query_(query),
@@ -20,7 +20,7 @@ class ShadowPath {
         left_m_(reach_m),
         mirror_(mirror) {}
 
-  // The share of its light that arrives.
+  // Share of the source's light that arrives.
   [[nodiscard]] Rgb follow(Hit hit);
 
  private:
@@ -29,7 +29,7 @@ class ShadowPath {
 
   const RayQuery& query_;
   Vec3 origin_, direction_;
-  Vec3 end_;  // of the way; or its image in the mirror that is still to come
+  Vec3 end_;  // end of the path, or its image in the mirror that is still ahead
   double left_m_;
   std::uint32_t mirror_;
   Rgb share_{1.0};

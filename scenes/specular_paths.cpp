@@ -13,13 +13,13 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr std::size_t most_mirrors = 32;
-constexpr double least_part = 0.02;  // of all that reflects
-// Triangles are of one plane if their normals and distances agree to these; an image is off by no
-// more than twice the one times the distance.
+constexpr double least_part = 0.02;  // of all reflecting area
+// Triangles share a plane if their normals and distances agree within these tolerances. The image
+// is off by at most twice the normal tolerance times the distance.
 constexpr double same_normal = 1e-4;
 constexpr double same_distance = 1e-5;  // of the object's extent
 
-// One side of a plane, while its triangles are counted.
+// One side of a plane, while its area is summed.
 struct Plane {
   Vec3 normal{0.0}, point{0.0};
   Vec3 low{0.0}, high{0.0};
@@ -37,7 +37,7 @@ class Planes {
     const Vec3 normal = side * triangle_normal(scene_, triangle);
     const Vec3& corner = scene_.vertices[v[0]];
     find_step(scene_.triangles[triangle].object);
-    // Rounding may put two halves of a square into cells side by side.
+    // Rounding may put two halves of a square into adjacent cells.
     std::size_t& at = last_[side > 0.0 ? 0 : 1];
     if (at >= planes.size() || !agrees(planes[at], normal, corner)) {
       const auto [entry, fresh] = known_.emplace(key_of(normal, corner), planes.size());
@@ -62,7 +62,7 @@ class Planes {
     return {std::llround(n.x), std::llround(n.y), std::llround(n.z), step_exponent_,
             std::llround(glm::dot(normal, corner - low_) / step_m_)};
   }
-  // A power of two, so that objects of much the same size share planes.
+  // A power of two, so that objects of similar size share planes.
   void find_step(std::uint32_t object) {
     if (object == object_) return;
     object_ = object;
@@ -87,7 +87,7 @@ class Planes {
   std::int64_t step_exponent_ = 0;
   std::uint32_t object_ = ~0U;
   std::map<Key, std::size_t> known_;
-  std::size_t last_[2] = {~std::size_t{0}, ~std::size_t{0}};  // plane of the triangle before
+  std::size_t last_[2] = {~std::size_t{0}, ~std::size_t{0}};  // plane of the previous triangle
 };
 
 }  // namespace
@@ -101,7 +101,7 @@ std::optional<Vec3> straight_through(const Scene& scene, std::uint32_t triangle,
                                      const Vec3& position, const Vec3& direction, double offset_m) {
   constexpr double least_cosine = 0.01;
   const Corners corners = corners_of(scene, triangle);
-  const Vec3 normal = corners.normal();  // as long as twice the area
+  const Vec3 normal = corners.normal();  // its length is twice the area
   const double area2 = glm::length(normal);
   const double cosine = std::abs(glm::dot(direction, normal)) / area2;
   if (!(cosine > least_cosine)) return std::nullopt;

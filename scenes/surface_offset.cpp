@@ -11,7 +11,8 @@ namespace {
 constexpr double unit_roundoff = 0x1p-24;  // of single precision
 constexpr double safety = 2.0;
 constexpr double double_rounding = 0x1p-50;
-// Of a triangle's extent: lifts rays off a plane through the centre, where nothing is rounded.
+// Share of a triangle's extent: lifts rays off a plane through the centre, where no rounding
+// occurs.
 constexpr double least_share = 1e-12;
 constexpr double contact_share = 1e-5, most_contact_m = 2e-5;
 
@@ -25,7 +26,7 @@ double products(const Vec3& a, const Vec3& b, int i) {
   return std::abs(a[j] * b[k]) + std::abs(a[k] * b[j]);
 }
 
-// An instance's coordinates are turned in single precision: the error has no preferred axis.
+// An instance's coordinates are rotated in single precision: the error has no preferred axis.
 double instance_offset_m(const Corners& p) {
   const double away = std::max({glm::length(p.a), glm::length(p.b), glm::length(p.c)});
   return safety * unit_roundoff * (6.0 * away + 8.0 * glm::length(extent_of(p)));
@@ -47,7 +48,7 @@ double weighted_median(std::vector<Weighted>& values) {
   return 0.0;
 }
 
-// Out of line: in line GCC 12 drops the rounding of components that it handles as a vector.
+// Not inlined: inlined, GCC 12 drops the rounding of components that it vectorises.
 [[gnu::noinline]] float in_single(double x) { return static_cast<float>(x); }
 
 }  // namespace
@@ -61,10 +62,11 @@ double rounding_offset_m(const Corners& p) {
   if (!(area2 > 0.0)) return least;
   double error = 0.0;
   for (int i = 0; i < 3; ++i) {
-    // Corners and origin are rounded to single precision, half a unit in the last place each; the
-    // differences, products and sums of the distance by as much of the triangle's extent.
+    // Corners and origin are rounded to single precision, half a unit in the last place each. The
+    // differences, products and sums of the distance are rounded by as much of the triangle's
+    // extent.
     error += std::abs(normal[i]) / area2 * (2.0 * most[i] + 6.0 * extent[i]);
-    // The normal is a cross product of two edges; Embree takes those with the smaller terms.
+    // The normal is a cross product of two edges; Embree uses the two with the smaller terms.
     const double terms =
         std::min(products(p.b - p.a, p.c - p.a, i), products(p.c - p.b, p.c - p.a, i));
     error += 2.0 * terms / area2 * extent[i];
@@ -72,10 +74,10 @@ double rounding_offset_m(const Corners& p) {
   return std::max(least, safety * unit_roundoff * error);
 }
 
-// The median of the objects' places. Small objects that are near a camera weigh most: rounding
-// errors are small where they would show most.
+// Weighted median of the objects' positions. Small objects near a camera have the largest weights:
+// rounding errors are small where they would be visible.
 Vec3 centre_of_detail(const Scene& scene) {
-  // By the triangles' own numbers: a scene may be a part of another, with all of its objects.
+  // By the triangles' own indices: a scene may be a subset of another one, with all of its objects.
   std::vector<Box> boxes;
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
     const std::uint32_t object = scene.triangles[t].object;
@@ -107,7 +109,7 @@ double surface_offset_m(const Scene& scene, std::uint32_t triangle, const Vec3& 
   const Corners in_scene = corners_of(scene, triangle), p = in_scene.seen_from(centre);
   const std::uint32_t object = scene.triangles[triangle].object;
   const bool placed = object < scene.objects.size() && scene.objects[object].instance;
-  // Points are lifted in the scene's coordinates, in double precision.
+  // Points are offset in scene coordinates, in double precision.
   const Vec3 far =
       glm::max(glm::abs(in_scene.a), glm::max(glm::abs(in_scene.b), glm::abs(in_scene.c)));
   const double least = double_rounding * std::max({far.x, far.y, far.z});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far off a surface rays start: the rounding errors of single precision where the surface is,
-// whatever else the scene holds (Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed.,
-// 6.8 "Managing rounding error").
+// Offset of ray origins from a surface: a bound of the local single-precision rounding errors,
+// independent of the rest of the scene (Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th
+// ed., 6.8 "Managing rounding error").
 #pragma once
 
 #include <cstdint>
@@ -17,17 +17,17 @@ class SurfaceOffsets {
   SurfaceOffsets() = default;
   explicit SurfaceOffsets(const Scene& scene);
 
-  // What the coordinates of the ray structure are relative to: the middle of what is small and near
-  // a camera. A value of single precision, so that subtracting it is exact nearby.
+  // Centre of detail: origin of the ray structure's coordinates, amid small objects near a camera.
+  // Representable in single precision, so that subtracting it is exact nearby.
   [[nodiscard]] const Vec3& centre() const { return centre_; }
 
-  // m, along the normal: no ray that starts so far off the triangle meets it. Bounds the error of
-  // the ray's origin, of the triangle's corners and of Embree's distance to its plane. For planes
-  // along the axes it follows the distance to the centre along their normal alone.
+  // Offset along the normal, m: a ray that starts there cannot hit its own triangle. Bounds the
+  // errors of the ray's origin, of the triangle's corners and of Embree's distance to its plane.
+  // For axis-aligned planes it depends only on the distance to the centre along the normal.
   [[nodiscard]] double of(std::uint32_t triangle) const { return double(offset_m_[triangle]); }
 
-  // m: faces nearer to each other than this touch. At least of() of both; at least 1e-5 of the
-  // smaller face, but no more than 20 um, for coordinates that a file has rounded.
+  // Contact distance, m: nearer faces touch. At least of() of both, and at least 1e-5 of the
+  // smaller face but at most 20 um, for coordinates that a file has rounded.
   [[nodiscard]] double contact(std::uint32_t a, std::uint32_t b) const;
   [[nodiscard]] double contact(std::uint32_t triangle) const {
     return double(contact_m_[triangle]);
@@ -42,7 +42,7 @@ class SurfaceOffsets {
 [[nodiscard]] Vec3 centre_of_detail(const Scene& scene);
 [[nodiscard]] double surface_offset_m(const Scene& scene, std::uint32_t triangle,
                                       const Vec3& centre);
-// The bound for a triangle of no instance whose corners are relative to the centre.
+// Bound for a triangle that is no instance, with corners relative to the centre.
 [[nodiscard]] double rounding_offset_m(const Corners& about_centre);
 
 }  // namespace earthshine::scenes

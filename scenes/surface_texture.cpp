@@ -12,14 +12,14 @@
 namespace earthshine::scenes {
 namespace {
 
-// Of a triangle for its mean, along each side: sixteen samples to a texel, within the first two
-// bounds, but no less than one, up to the last.
+// Samples per side of a triangle for its mean: sixteen per texel between the first two bounds, but
+// at least one per texel up to the last bound.
 constexpr int fewest_samples = 4, most_samples = 64, most_of_many_texels = 256;
-// For the mean over all that wears a material: many small triangles need few samples each.
+// For the mean over all surfaces of a material: many small triangles need few samples each.
 constexpr std::size_t samples_of_material = std::size_t{1} << 20;
 constexpr std::size_t triangles_together = 1024;
 
-// What stands at the vertices, there.
+// Interpolates vertex values at a place.
 template <class Value, class OfVertex>
 Value mixed(const Scene& scene, const std::vector<OfVertex>& of_vertex, const SurfacePlace& place) {
   const auto& vertex = scene.triangles[place.triangle].vertex;
@@ -35,7 +35,7 @@ glm::dvec2 uv_at(const Scene& scene, const SurfacePlace& place) {
   return mixed<glm::dvec2>(scene, scene.vertex_uv, place);
 }
 
-// Texels to a metre of the triangle, by their areas.
+// Texels per metre of the triangle, from the ratio of areas.
 double texels_per_m_of(const Scene& scene, const TextureMap& map, std::uint32_t triangle) {
   const auto& vertex = scene.triangles[triangle].vertex;
   const auto& uv = coordinates(scene, map);
@@ -52,7 +52,7 @@ glm::dvec4 look_up(const Scene& scene, const TextureMap& map, const SurfacePlace
   return map.texture->at(map.transform->apply(uv));
 }
 
-// What multiplies the material's own diffuse colour there.
+// Factor on the material's diffuse colour at a place.
 Rgb diffuse_factor(const Scene& scene, const MaterialMaps& maps, const SurfacePlace& place) {
   Rgb factor(1.0);
   if (maps.diffuse.texture) factor = Rgb(look_up(scene, maps.diffuse, place));
@@ -60,7 +60,7 @@ Rgb diffuse_factor(const Scene& scene, const MaterialMaps& maps, const SurfacePl
   return factor;
 }
 
-// Sums over the surfaces of a material, by area.
+// Area-weighted sums over the surfaces of a material.
 struct Sums {
   double area = 0.0;
   Rgb diffuse{0.0}, emit{0.0};
@@ -72,13 +72,13 @@ struct Sums {
   }
 };
 
-// `most` samples, of the sequence of even points from `first` on, so that triangles that repeat a
-// pattern do not repeat its samples.
+// Takes at most `most` samples of the low-discrepancy sequence from index `first` on, so that
+// triangles with the same pattern do not share samples.
 void add_triangle(const Scene& scene, std::uint32_t triangle, const MaterialMaps& maps, Sums& sums,
                   std::size_t most = SIZE_MAX, std::size_t first = 0) {
   const double area = triangle_area(scene, triangle);
   if (!maps.diffuse.texture && !maps.emit.texture && !maps.opacity.texture) {
-    // Vertices' colours alone are linear: their mean is that of the middle.
+    // Vertex colours are linear: their mean is the value at the middle.
     sums.area += area;
     sums.diffuse += area * diffuse_factor(scene, maps, {triangle, 1.0 / 3.0, 1.0 / 3.0});
     return;
@@ -92,7 +92,7 @@ void add_triangle(const Scene& scene, std::uint32_t triangle, const MaterialMaps
   const double share = area / double(count);
   for (std::size_t k = 0; k < count; ++k) {
     const glm::dvec2 square = base::even_point(first + k);
-    const double root = std::sqrt(square.x);  // even over the triangle
+    const double root = std::sqrt(square.x);  // uniform over the triangle
     place.u = root * (1.0 - square.y);
     place.v = root * square.y;
     if (!is_opaque(maps, uv_at(scene, place))) continue;

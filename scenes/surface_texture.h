@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a textured surface is like at a point of it, and on average.
+// Properties of a textured surface, at a point and on average.
 #pragma once
 
 #include <array>
@@ -12,13 +12,13 @@
 
 namespace earthshine::scenes {
 
-// A point of a triangle by the weights u, v of its second and third vertex.
+// A point of a triangle: u, v are the weights of its second and third vertex.
 struct SurfacePlace {
   std::uint32_t triangle = 0;
   double u = 0.0, v = 0.0;
 };
 
-// k_d and exitance there; without a texture those of the material.
+// k_d and exitance at a place; without a texture the material's values.
 [[nodiscard]] Rgb textured_diffuse(const Scene& scene, const Material& material,
                                    const SurfacePlace& place);
 [[nodiscard]] Rgb textured_emit(const Scene& scene, const Material& material,
@@ -33,24 +33,23 @@ struct SurfacePlace {
   return textured_emit(scene, material, {hit.triangle, hit.u, hit.v});
 }
 
-// Texels to a metre of the triangle, by their areas, of the finest texture of its material; 0: none.
+// Texels per metre of the triangle, from areas, of its material's finest texture; 0: no texture.
 [[nodiscard]] double texels_per_m(const Scene& scene, std::uint32_t triangle);
 
-// The mean exitance of a triangle over its whole area, holes included.
+// Mean exitance of a triangle over its whole area, including holes.
 [[nodiscard]] Rgb mean_emit(const Scene& scene, std::uint32_t triangle);
 
-// Whether anything is there: false in the holes of an opacity mask.
+// False in the holes of an opacity mask.
 [[nodiscard]] bool is_there(const Scene& scene, std::uint32_t triangle, double u, double v);
 
-// Replaces the factors in diffuse and emit of textured materials, as their files have them, by
-// their means over the surfaces that wear them, and finds TextureMap::over_mean. Once, when a scene
-// is complete.
+// Replaces the factors in diffuse and emit of textured materials by their means over the surfaces
+// of the material, and computes TextureMap::over_mean. Call once, when a scene is complete.
 void settle_textures(Scene& scene);
 
-// All textures of the scene together, bytes.
+// Size of all textures of the scene, bytes.
 [[nodiscard]] std::size_t texture_bytes(const Scene& scene);
 
-// Opacity masks: where a surface has holes. Holds copies of what it needs, not the scene.
+// Opacity masks: holes of surfaces. Copies its data from the scene.
 
 inline constexpr std::uint32_t unmasked = 0xFFFFFFFFU;
 
@@ -64,7 +63,7 @@ class OpacityMasks {
   [[nodiscard]] bool is_hole(std::uint32_t triangle, double u, double v) const {
     return number_[triangle] != unmasked && has_hole(number_[triangle], u, v);
   }
-  // A running number of the triangles with masks, in the scene's order; or unmasked.
+  // Index among triangles with masks, in the scene's order; or unmasked.
   [[nodiscard]] std::uint32_t number(std::uint32_t triangle) const { return number_[triangle]; }
   [[nodiscard]] bool has_hole(std::uint32_t number, double u, double v) const;
 
@@ -75,13 +74,13 @@ class OpacityMasks {
   };
   std::vector<std::uint32_t> number_;  // per triangle
   std::vector<Masked> masked_;
-  std::vector<std::shared_ptr<const MaterialMaps>> maps_;  // keeps them
+  std::vector<std::shared_ptr<const MaterialMaps>> maps_;  // owns them
 };
 
 // Whether any material has an opacity mask.
 [[nodiscard]] bool any_has_holes(const Scene& scene);
 
-// Whether a place of a textured surface is there; uv: of its vertices, mixed.
+// Whether a textured surface exists at a place; uv: interpolated texture coordinates.
 [[nodiscard]] bool is_opaque(const MaterialMaps& maps, const glm::dvec2& uv);
 
 }  // namespace earthshine::scenes

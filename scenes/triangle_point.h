@@ -9,7 +9,7 @@
 
 namespace earthshine::scenes {
 
-// With its edges along the axes; empty before a point is added.
+// Axis-aligned box; empty before a point is added.
 struct Box {
   Vec3 low{std::numeric_limits<double>::infinity()}, high{-low};
   void add(const Vec3& point) {
@@ -21,8 +21,8 @@ struct Box {
     high = glm::max(high, other.high);
   }
   [[nodiscard]] Vec3 middle() const { return 0.5 * (low + high); }
-  // Out of line: in line GCC 12 drops the rounding, double to float to double, of two components
-  // that it handles as a vector, and rounds only the third.
+  // Not inlined: inlined, GCC 12 drops the rounding from double to float of two components that it
+  // vectorises.
   [[nodiscard, gnu::noinline]] glm::vec3 middle_in_single() const;
   [[nodiscard]] double diagonal() const { return glm::length(high - low); }
 };
@@ -30,14 +30,14 @@ struct Box {
 
 struct Corners {
   Vec3 a, b, c;
-  // As long as twice the area.
+  // Its length is twice the area.
   [[nodiscard]] Vec3 normal() const { return glm::cross(b - a, c - a); }
   [[nodiscard]] Corners seen_from(const Vec3& point) const {
     return {a - point, b - point, c - point};
   }
-  // 6 times the volume between it and the origin, above 0 where the origin is behind its front.
+  // 6 times the volume between triangle and origin, positive if the origin is behind the front.
   [[nodiscard]] double triple_product() const { return glm::dot(a, glm::cross(b, c)); }
-  // As seen from the origin, in sr, with the sign of triple_product() (van Oosterom and Strackee,
+  // Solid angle from the origin, sr, with the sign of triple_product() (van Oosterom and Strackee,
   // "The solid angle of a plane triangle", 1983, equation 8).
   [[nodiscard]] double solid_angle() const;
 };
@@ -46,12 +46,11 @@ struct Corners {
   return {scene.vertices[v[0]], scene.vertices[v[1]], scene.vertices[v[2]]};
 }
 
-// The point of the triangle a, b, c that is nearest to p (Ericson, "Real-Time Collision Detection",
-// 2005, 5.1.5).
+// Nearest point of triangle a, b, c to p (Ericson, "Real-Time Collision Detection", 2005, 5.1.5).
 [[nodiscard]] Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
-// Barycentric coordinates of p's foot on the plane of a, a + edge1, a + edge2: the weights of the
-// second and the third corner. The triangle has area.
+// Barycentric coordinates of p's projection on the plane of a, a + edge1, a + edge2: the weights of
+// the second and the third corner. The triangle must have area.
 struct Barycentric {
   double u, v;
 };

@@ -41,7 +41,7 @@ Json AccuracyParts::cache_key_of(const studies::Batch& batch) const {
   return cache_key;
 }
 
-// Every knob that the picture depends on, as resolved: a default that changes has other cache_key.
+// All resolved settings that the picture depends on: a changed default gives another cache_key.
 Json AccuracyParts::cache_key_of(const studies::AccuracyStep& step, std::uint64_t seed) const {
   Json cache_key = common_cache_key_;
   const radiosity::SolveOptions solver = studies::solver_of(scene_, step, seed);
@@ -66,7 +66,7 @@ Json AccuracyParts::cache_key_of(const studies::AccuracyStep& step, std::uint64_
   return cache_key;
 }
 
-// As it is kept beside a step's picture.
+// Stored form beside a step's picture.
 template <class Fields>
 void describe(Fields& fields, Either<studies::StepCost> auto& cost) {
   fields("wall_seconds", cost.wall_seconds);
@@ -169,7 +169,7 @@ CachedResult AccuracyParts::point(const studies::AccuracyStep& step, std::uint64
 
 void AccuracyParts::expect(const std::vector<studies::AccuracyStep>& steps) {
   for (const studies::AccuracyStep& step : steps) {
-    // A steered one makes its own solutions.
+    // Adaptive steps make their own solutions.
     if (step.indirect != raytrace::Indirect::Radiosity || step.steered()) continue;
     expected_.push_back(studies::solver_of(scene_, step, task_.view.seed));
   }
@@ -205,7 +205,7 @@ double AccuracyParts::seconds() const {
 }
 
 double AccuracyParts::wall_per_cpu() const {
-  // Reading what is stored takes little of either.
+  // Reading stored results takes little of either.
   return std::max(1e-3, seconds()) / std::max(1e-3, base::cpu_seconds() - cpu_start_);
 }
 

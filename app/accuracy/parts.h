@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of `study accuracy`: taken from the store, or worked out and kept there.
+// The parts of `study accuracy`: read from the cache, or computed and stored.
 #pragma once
 
 #include <chrono>
@@ -16,28 +16,28 @@ class AccuracyParts {
  public:
   AccuracyParts(const AccuracyTask& task, const scenes::World& scene);
 
-  // Of a reference: channels as trace_batch has them; fact: cpu_seconds.
+  // Part of a reference: channels as from trace_batch; fact: cpu_seconds.
   [[nodiscard]] CachedResult batch(const studies::Batch& batch);
   // A step's picture, channel Y, and its cost.
   [[nodiscard]] CachedResult point(const studies::AccuracyStep& step, std::uint64_t seed);
-  // Whether it is in the store, with its picture.
+  // Whether it is stored with its picture.
   [[nodiscard]] bool has(const studies::Batch& batch) const;
   [[nodiscard]] bool has(const studies::AccuracyStep& step, std::uint64_t seed) const;
-  // Of all that the study's parts depend on.
+  // Digests of everything that the study's parts depend on.
   [[nodiscard]] Json digests(const std::vector<studies::AccuracyStep>& ladder) const;
   [[nodiscard]] static studies::StepCost cost_of(const Json& facts);
 
-  // Steps to come: a solution that several of them read is solved for once.
+  // Announces later steps, so that a common solution is computed once.
   void expect(const std::vector<studies::AccuracyStep>& steps);
-  // Why the step's memory cannot be had; "" if it can.
+  // Reason why the step does not fit into memory; "" if it fits.
   [[nodiscard]] std::string does_not_fit(const studies::AccuracyStep& step) const;
 
-  // Keeps that reason in place of the step, for the merge; "" where there is none.
+  // Stores that reason instead of the step, for the merge; "" if there is none.
   void leave_out(const studies::AccuracyStep& step, const std::string& why) const;
   [[nodiscard]] std::string left_out(const studies::AccuracyStep& step) const;
 
-  [[nodiscard]] double seconds() const;  // wall, since the beginning
-  // How the machine turns CPU seconds into wall seconds just now, for what is still to come.
+  [[nodiscard]] double seconds() const;  // wall time since the start
+  // Present ratio of wall to CPU seconds, to predict the remaining time.
   [[nodiscard]] double wall_per_cpu() const;
   void tell(const std::string& what, double seconds_left, const std::string& found) const;
 
@@ -48,7 +48,7 @@ class AccuracyParts {
   [[nodiscard]] bool is_stored(const Json& cache_key) const;
   [[nodiscard]] std::optional<CachedResult> stored(const Json& cache_key);
   [[noreturn]] void end_early() const;
-  // Before work that is not stored: throws base::Error (Work) where none is to be done.
+  // Call before work without a stored result: throws base::Error (Work) if no work may be done.
   void see_that_work_is_wanted() const;
 
   const AccuracyTask& task_;
@@ -61,12 +61,11 @@ class AccuracyParts {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// What `study accuracy` works out, stage by stage, whether by one process or in parts.
+// The stages of `study accuracy`, for one process or in parts.
 
-inline constexpr int first_paths =
-    16;  // per pixel and side, before it is known how many are needed
+inline constexpr int first_paths = 16;  // per pixel and side, before the required number is known
 
-// Both sides of a reference, batch by batch.
+// The two halves of a reference, batch by batch.
 struct PathReference {
   raytrace::PathSet paths = raytrace::PathSet::All;
   std::vector<studies::Batch> batches[2];
@@ -79,18 +78,18 @@ class AccuracyStages {
  protected:
   explicit AccuracyStages(const AccuracyTask& task);
 
-  [[nodiscard]] double finest() const;  // of the wanted errors
-  // Why there is nothing to measure, as far as it is known without a path; "": there may be.
+  [[nodiscard]] double finest() const;  // smallest wanted error
+  // Reason why there is nothing to measure, if known without paths; "": unknown.
   [[nodiscard]] std::string nothing_to_measure() const;
   [[nodiscard]] std::vector<PathReference> new_references() const;
-  // One batch on both sides of every reference, so that a time limit leaves them alike.
+  // One batch for both sides of every reference, so that a time limit leaves them equal.
   void trace_round(std::vector<PathReference>& references, int index, int paths);
   void take_truth(const PathReference& reference);
-  // Why there is nothing to measure; "": there is.
+  // Reason why there is nothing to measure; "": there is something.
   [[nodiscard]] std::string trace_first(std::vector<PathReference>& references);
   // Paths of the rounds after the first.
   [[nodiscard]] std::vector<int> further_rounds();
-  // Direct light alone, on both sides.
+  // Direct light only, on both sides.
   [[nodiscard]] studies::AccuracyStep straight_step() const;
   [[nodiscard]] std::uint64_t straight_seed(int side) const;
   [[nodiscard]] std::vector<studies::AccuracyStep> make_ladder() const;
@@ -99,8 +98,8 @@ class AccuracyStages {
   scenes::World scene_;
   AccuracyParts parts_;
   AccuracyResult result_;
-  studies::ReferencePair full_;  // without light straight from the sources
-  std::vector<bool> counted_;    // its pixels
+  studies::ReferencePair full_;  // without direct light
+  std::vector<bool> counted_;    // pixels that count
 };
 
 }  // namespace earthshine::app

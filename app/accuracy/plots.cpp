@@ -11,7 +11,7 @@
 namespace earthshine::app {
 namespace {
 
-// Of each series: the colour goes with the method, the mark with what is varied.
+// Style of a series: the colour shows the method, the marker the parameter that varies.
 struct Look {
   const char* method;
   const char* series;
@@ -34,7 +34,7 @@ std::string style_of(const Look& look) {
   return fmt::format("with linespoints lw 1.5 pt {} ps 0.8 lc rgb '{}'", look.mark, look.colour);
 }
 
-// In per cent; an error that cannot be told from none is drawn at the reference's resolution.
+// In per cent; insignificant errors are drawn at the reference's resolution.
 PlotPoint point_at(double x, const studies::PictureError& error, double resolution) {
   const double least = std::max(resolution, 1e-6);
   const auto drawn = [&](double value) { return 100.0 * std::max(value, least); };
@@ -110,7 +110,7 @@ std::vector<AccuracyPlot> accuracy_plots(const AccuracyTask& task, const Accurac
   seconds.panels.push_back(
       error_panel(result, "memory of the same", "MiB, solve and picture",
                   [](const studies::MeasuredStep& p) { return p.cost.memory_bytes / mib; }));
-  // The front is one of seconds, not of memory; the legend is the same.
+  // The Pareto front is for seconds, not memory; the legend is common.
   seconds.panels.back().legend = false;
   seconds.panels.back().curves.erase(seconds.panels.back().curves.begin());
   AccuracyPlot settings{accuracy_plot_stems[1], {}, 3};

@@ -140,7 +140,7 @@ std::string answer_text(const AccuracyTask& task, const AccuracyResult& result,
   }
   text += "\n";
   for (const studies::Answer::OfMethod& method : answer.methods) {
-    // What the method leaves out aside.
+    // Without the systematic error of the method.
     if (!method.setting || method.method != "radiosity") continue;
     text += "        but for its limit radiosity is there: " +
             point_text(task, result.points[*method.setting]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `study accuracy` in words, tables and plots.
+// Text, tables and plots of `study accuracy`.
 #pragma once
 
 #include <string>
@@ -10,15 +10,15 @@
 
 namespace earthshine::app {
 
-// The row of a step in accuracy.csv and in the JSON's `points`.
+// The rows of accuracy.csv and of `points` in the JSON, one per step.
 [[nodiscard]] Json accuracy_json(const AccuracyTask& task, const AccuracyResult& result);
 [[nodiscard]] std::string accuracy_text(const AccuracyTask& task, const AccuracyResult& result);
 
-// The call that draws a step, for a shell: "earthshine render 'my scene.toml' --camera B ...".
+// The shell command that renders a step: "earthshine render 'my scene.toml' --camera B ...".
 [[nodiscard]] std::string command_of(const AccuracyTask& task, const studies::AccuracyStep& step);
 
 struct AccuracyPlot {
-  std::string stem;  // of its script and its picture
+  std::string stem;  // file stem of its script and its picture
   std::vector<PlotPanel> panels;
   int across = 1;
 };

@@ -33,7 +33,7 @@ class Study : AccuracyStages {
     draw_straight();
     find_limits();
     climb();
-    // Of what was not in the ladder nothing is said.
+    // Removes methods that are not in the ladder.
     std::erase_if(result_.limits, [this](const MethodLimit& limit) {
       return std::none_of(ladder_.begin(), ladder_.end(), [&](const studies::AccuracyStep& step) {
         return step.method == limit.method;
@@ -55,7 +55,7 @@ class Study : AccuracyStages {
     return task_.call.time_limit_s - parts_.seconds();
   }
 
-  // Why there is nothing to measure; "": there is.
+  // Reason why there is nothing to measure; "": there is something.
   std::string trace_references() {
     std::vector<PathReference> references = new_references();
     if (std::string why = trace_first(references); !why.empty()) return why;
@@ -158,7 +158,7 @@ class Study : AccuracyStages {
 
 // `study accuracy` in parts.
 
-// A piece of the work that another process may do.
+// A unit of work for another process.
 struct AccuracyPiece {
   std::string name;
   std::function<bool()> is_done;
@@ -221,7 +221,7 @@ class AccuracyShare : AccuracyStages {
     return pieces;
   }
 
-  // Steps that read the same solution are one piece.
+  // Steps that read the same solution form one unit.
   std::vector<AccuracyPiece> pieces_of_steps() {
     std::vector<std::pair<std::vector<studies::AccuracyStep>, std::uint64_t>> groups;
     for (int side = 0; side < 2; ++side) {
@@ -263,7 +263,7 @@ class AccuracyShare : AccuracyStages {
     return pieces;
   }
 
-  // A step of the ladder whose memory cannot be had here is left out, as one process does.
+  // A step of the ladder that does not fit into memory is skipped, as in a single process.
   void take_step(const studies::AccuracyStep& step, std::uint64_t seed) {
     const bool may_be_left_out = seed == task_.view.seed && !parts_.has(step, seed);
     const std::string unfit = may_be_left_out ? parts_.does_not_fit(step) : "";

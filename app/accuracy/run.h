@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `study accuracy` at work: the references and the ladder, part by part, each kept as it is
-// finished.
+// Runs `study accuracy`: references and ladder in parts, each stored when it is finished.
 #pragma once
 
 #include <optional>
@@ -16,12 +15,12 @@ namespace earthshine::app {
 
 struct AccuracyCall : StudyCall {
   std::vector<double> wanted = {0.05, 0.02, 0.01};
-  double reference_factor = 2.0;  // how much finer the reference than the least wanted error
+  double reference_factor = 2.0;  // ratio of the smallest wanted error to the reference's error
   double time_limit_s = 0.0;      // 0: none
   studies::LadderOptions ladder;  // its errors follow from `wanted` and the scene
 };
 
-// What a method can come to at best.
+// Smallest error that a method can reach.
 struct MethodLimit {
   std::string method;
   studies::PictureError error;
@@ -33,9 +32,9 @@ struct NotRun {
 };
 
 struct AccuracyResult {
-  std::string nothing;  // why there is nothing to measure; "": there is
+  std::string nothing;  // reason why there is nothing to measure; "": there is something
   std::size_t pixels = 0;
-  double mean_luminance = 0.0;  // without light straight from the sources, cd/m^2
+  double mean_luminance = 0.0;  // without direct light, cd/m^2
   double resolution = 0.0;      // of the reference, relative
   double wanted_resolution = 0.0;
   int reference_paths = 0;             // per pixel, of each of the two pictures
@@ -55,12 +54,12 @@ struct AccuracyTask {
   const ResultCache& store;
 };
 
-// Throws base::Error (Work) with what is finished once view.stop says so.
+// Throws base::Error (Work) with the finished results when view.stop returns true.
 [[nodiscard]] AccuracyResult measure_accuracy(const AccuracyTask& task);
 
-// The work of a part: rounds of references, and steps by the solution that they read, dealt out in
-// turn, as they become dearer along the ladder. The first round, which says how many follow, is
-// found or done by every part.
+// Work of a part: rounds of references, and steps grouped by solution. Steps are assigned
+// round-robin, because their cost rises along the ladder. Every part computes or reads the first
+// round, which determines the number of rounds.
 void share_accuracy(const AccuracyTask& task, PartCall& part);
 
 }  // namespace earthshine::app

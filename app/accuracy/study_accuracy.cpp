@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// earthshine study accuracy: what a smaller error costs, by each method.
+// earthshine study accuracy: the cost of a smaller error, for each method.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ std::vector<std::string> file_names() {
   return names;
 }
 
-// The plots' scripts, and their pictures where gnuplot is there.
+// The plots' scripts, and their pictures if gnuplot is installed.
 void write_plots(const fs::path& folder, const AccuracyTask& task, const AccuracyResult& result) {
   std::vector<std::string> scripts;
   for (const AccuracyPlot& plot : accuracy_plots(task, result)) {
@@ -48,7 +48,7 @@ void write_plots(const fs::path& folder, const AccuracyTask& task, const Accurac
   }
   const std::string problem = draw_plots(folder, scripts);
   if (problem.empty()) return;
-  // A picture of an earlier run would show other figures.
+  // Removes pictures of earlier runs, which would show other data.
   for (const char* stem : accuracy_plot_stems) {
     std::error_code ignored;
     fs::remove(folder / (std::string(stem) + ".svg"), ignored);
@@ -105,7 +105,7 @@ void run(const AccuracyCall& call, const Common& common) {
     if (part.task != PartCall::Task::Merge) return;
   }
   const AccuracyResult result = measure_accuracy(task);
-  interrupt.reset();  // gnuplot is not waited for against a signal
+  interrupt.reset();  // a signal need not wait for gnuplot
   const Json json = accuracy_json(task, result);
   base::write_text(folder / table_csv, csv_of(json["points"]));
   base::write_text(folder / accuracy_file, dump(json));

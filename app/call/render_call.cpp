@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options of render: less than the whole picture (a part of it, a time), and how light gets around.
+// Options of render: partial pictures (a window, a time limit), and indirect light.
 #include "app/call/render_call.h"
 
 #include <fmt/format.h>
@@ -30,8 +30,7 @@ using base::Error;
 
 namespace {
 
-// Whole numbers between the marks of `pattern`: "," and "x" stand for themselves, each # for
-// one.
+// Integers in a text of the form `pattern`: "," and "x" are literal, each # is an integer.
 std::optional<std::vector<int>> numbers_like(std::string_view pattern, std::string_view text) {
   std::vector<int> numbers;
   const char *at = text.data(), *end = at + text.size();
@@ -73,14 +72,14 @@ void add_indirect_options(CLI::App& parser, RenderCall& call) {
       ->type_name("NAME");
 }
 
-constexpr double crease_deg = 35.0;  // a cylinder of 12 sides or more is round
+constexpr double crease_deg = 35.0;  // rounds cylinders of 12 sides or more
 constexpr double aspect_tolerance = 0.01;
-constexpr double rim_px = 2.0;  // dark, on both sides of a line: it shows on bright ground too
+constexpr double rim_px = 2.0;  // dark, on both sides of a line: makes it visible on bright ground
 constexpr base::Colour8 line_colour = {0, 255, 140};
 constexpr base::Colour8 rim_colour = {0, 0, 0};
-constexpr double rim_alpha = 0.5;  // of the line's
+constexpr double rim_alpha = 0.5;  // relative to the line's
 
-// Lines keep their weight on photographs of any size.
+// Lines keep their visual weight on photographs of any size.
 double line_width_px(const base::Picture8& photo) { return std::max(1.0, photo.height / 600.0); }
 
 void draw_wire(base::Picture8& photo, const scenes::Scene& scene, const scenes::RayQuery& query,

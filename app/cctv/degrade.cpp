@@ -81,7 +81,7 @@ Files inputs_of(const DegradeCall& call) {
   return inputs;
 }
 
-// Every file that the frames will be written into.
+// Checks every file that the frames will be written to.
 void check_files(const DegradeCall& call, const std::vector<TapeFrame>& tape, const Files& inputs) {
   check_numbered("-o", call.output, tape.size());
   check_numbered("--twin", call.twin, tape.size());
@@ -94,7 +94,7 @@ void check_files(const DegradeCall& call, const std::vector<TapeFrame>& tape, co
   check_outputs(outputs, inputs);
 }
 
-// The camera asked for, else the one that the picture says it was rendered with, else the first.
+// The requested camera, else the camera named in the picture's header, else the first one.
 const scenes::Camera& camera_of(const DegradeCall& call, const scenes::Scene& scene,
                                 const base::ExrHeader& header) {
   if (!call.camera.empty()) return choose_camera(scene, call.camera, {"--camera"});
@@ -121,7 +121,7 @@ CctvSetup setup_for(const DegradeCall& call, const Common& common, const base::E
   return cctv_of_preset(std::string(default_preset), common);
 }
 
-// What a sequence goes through: the picture read last, so that a still is read once.
+// Caches the last picture, so that a still is read once.
 struct Reader {
   bool quiet = false;
   bool noted_crop = false;
@@ -143,7 +143,7 @@ struct Reader {
   }
 };
 
-// Vertical field of view: as told, the scene's camera's, or what the picture's header says.
+// Vertical field of view: of the option, else of the scene's camera, else of the picture's header.
 double field_of_view(const DegradeCall& call, double of_scene, const base::ExrHeader& header) {
   if (call.fov_deg) return *call.fov_deg;
   if (of_scene > 0.0) return of_scene;
@@ -153,7 +153,7 @@ double field_of_view(const DegradeCall& call, double of_scene, const base::ExrHe
   return 0.0;
 }
 
-// What was read: its size, and where it lies in the whole view if it is a crop of it.
+// The picture's size, and its position if it is a crop.
 Json picture_json(const degrade::RadianceFile& file, const base::ExrHeader::Whole& whole) {
   Json json = {{"columns", file.columns}, {"rows", file.rows}, {"read_in_strips", file.averaged}};
   if (whole.columns > 0) {

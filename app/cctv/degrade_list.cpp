@@ -26,7 +26,7 @@ struct Row {
   Json value;
 };
 
-// The settings that have a source are those in use.
+// Settings in use have a source.
 class Rows {
  public:
   explicit Rows(const std::vector<SettingSource>& sources) : sources_(sources) {}
@@ -148,8 +148,8 @@ using degrade::listed;
 constexpr std::string_view suffix = ".toml";
 
 struct Argument {
-  std::string file;  // "": a camera that ships
-  std::string name;  // "": the file's only one
+  std::string file;  // "": a built-in camera
+  std::string name;  // "": the only one in the file
 };
 
 Argument split(const std::string& argument) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// degrade --list and --describe: the cameras that ship, the stages, one camera in full.
+// degrade --list and --describe: built-in cameras, stages, full description of one camera.
 #pragma once
 
 #include <string>
@@ -15,23 +15,23 @@ namespace earthshine::app {
 [[nodiscard]] Json camera_json(const degrade::ResolvedCamera& camera);
 [[nodiscard]] std::string describe_camera(const degrade::ResolvedCamera& camera);
 
-// Throws base::Error (Input) where the call names more beside `asked`, which makes no picture, than
-// its `own` options and those of every command.
+// For `asked`, an option without a picture: throws base::Error (Input) if the call has other
+// options than its `own` and the common ones.
 void refuse_beside(const std::string& asked, const CLI::App& degrade, std::vector<std::string> own);
 
 void list_cameras(bool as_json);
 void print_camera(const degrade::ResolvedCamera& camera, bool as_json);
 
-// CAMERA as it is typed on the command line: one that ships, or one of a file.
+// CAMERA on the command line: a built-in camera, or one of a file.
 
-// NAME of a camera that ships; FILE.toml, a camera file or a scene with one [[cctv]]; or
-// FILE.toml:NAME. `option` is the place that messages name. Throws base::Error (Input): no such
-// name (with the nearest), no or several [[cctv]] without a NAME (with their names), and whatever
-// is wrong in the file.
+// NAME of a built-in camera; FILE.toml, a camera file or a scene with one [[cctv]]; or
+// FILE.toml:NAME. `option` is the place for messages. Throws base::Error (Input) for an unknown
+// name (with the nearest), for no or several [[cctv]] without a NAME (with their names), and for
+// errors in the file.
 [[nodiscard]] degrade::ResolvedCamera camera_of_argument(std::string_view option,
                                                          const std::string& argument);
 
-// The file within the argument, "" when it is a camera that ships.
+// The file of the argument, "" for a built-in camera.
 [[nodiscard]] std::string file_of_camera(const std::string& argument);
 
 }  // namespace earthshine::app

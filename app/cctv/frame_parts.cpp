@@ -22,7 +22,7 @@ Json digests_of_call(const TapeCall& pictures, const CctvSetup& setup) {
   return {{"pictures", digest_of(files)}, {"settings", digest_of(settings)}};
 }
 
-// Of the # in the file's name, not in its folder's.
+// Position of the # in the file name, ignoring folders.
 std::pair<std::size_t, std::size_t> run_of_hashes(const std::string& path) {
   const std::size_t slash = path.find_last_of('/');
   const std::size_t begin = path.find('#', slash == std::string::npos ? 0 : slash + 1);

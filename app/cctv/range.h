@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The range sensor as `render --range` uses it: one ray per pixel, no light.
+// The range sensor for `render --range`: one ray per pixel, no light.
 #pragma once
 
 #include <optional>
@@ -16,14 +16,14 @@ struct RangeShot {
   const scenes::Scene& scene;
   const scenes::RayQuery& query;
   const scenes::Camera& camera;
-  std::optional<Size> size;  // unless the camera's own
+  std::optional<Size> size;  // overrides the camera's own
 };
 
-// Writes what the sensor that the camera names reports, or one without faults, which is said on
-// standard error unless quiet: channels range (m along the ray, 0: no return) and valid, the camera
-// and the sensor's settings in the header. Each camera of a scene has noise of its own. Returns
-// {"camera", "columns", "rows", "seconds", "range"}, the last with the sensor's name, how many
-// pixels returned, and why the others did not.
+// Writes the readings of the camera's sensor, or of an ideal one, which is noted on standard error
+// unless quiet: channels range (m along the ray, 0: no return) and valid, with the camera and the
+// sensor's settings in the header. Each camera of a scene has independent noise. Returns {"camera",
+// "columns", "rows", "seconds", "range"}; "range" has the sensor's name, the number of returns, and
+// the reasons for missing ones.
 Json sense_range(const RangeShot& shot, const std::string& path,
                  const std::vector<std::string>& overrides, const Common& common,
                  StageTimes& times);

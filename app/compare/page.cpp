@@ -15,7 +15,7 @@ namespace {
 
 using studies::MethodResult;
 
-constexpr int magnified_to = 512;  // px: small pictures, by a whole number
+constexpr int magnified_to = 512;  // px: small pictures are enlarged by an integer factor
 
 std::string percent(double share) { return figure(share, Form::Percent) + " %"; }
 
@@ -90,7 +90,7 @@ std::string page_of(const std::string& scene, const std::string& camera,
                     const std::vector<std::string>& warnings,
                     const studies::Comparison& comparison) {
   const std::string title = escaped(scene) + ", camera " + escaped(camera);
-  // Nothing but the pictures beside the page may be loaded, and no script may run.
+  // Only the pictures beside the page may be loaded; scripts may not run.
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "

@@ -119,13 +119,13 @@ void write_pictures(const std::filesystem::path& folder, const studies::Comparis
 void run(const CompareCall& call, const Common& common) {
   LoadedScene loaded = load(call.scene, common.quiet);
   const scenes::Camera& camera = camera_of(call, loaded.scene, common.quiet);
-  (void)raytrace::earth_area(loaded.scene, call.area);  // a wrong one is refused before the folder
+  (void)raytrace::earth_area(loaded.scene, call.area);  // reports errors before the folder is made
   prepare_folder(call.folder, file_names(call.lights, call.area), loaded.scene.files);
 
   studies::CompareOptions options;
   options.columns = call.size ? call.size->columns : camera.columns;
   options.rows = call.size ? call.size->rows : camera.rows;
-  // The program as users run it.
+  // With the settings of `render`.
   const raytrace::RenderOptions as_rendered =
       raytrace::render_options(scenes::resolve_quality(loaded.scene));
   options.gather_rays = as_rendered.gather_rays;

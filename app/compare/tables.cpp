@@ -54,8 +54,8 @@ std::string fixed_table(const studies::Comparison& comparison) {
              "noise-floor", "", 100.0 * comparison.reference_noise, studies::misleading_factor);
 }
 
-// Errors smaller than what the reference itself is uncertain by are found, as the mean over all
-// pixels is far surer than one of them, but only to their standard error.
+// Errors below the uncertainty of the reference are detectable, since the mean over all pixels is
+// much more accurate than one pixel, but only to their standard error.
 std::string noise_text(const studies::Comparison& comparison) {
   std::vector<std::string> judged;
   for (const std::size_t k : studies::errors_below_the_references_noise(comparison)) {
@@ -105,7 +105,7 @@ Json method_rows(const studies::Comparison& comparison) {
     row["render_cpu_seconds"] = result.render_cpu_seconds;
     rows.push_back(std::move(row));
   }
-  // What the reference itself is uncertain by.
+  // Uncertainty of the reference.
   Json noise = rows.front();
   for (auto& [key, value] : noise.items()) value = nullptr;
   noise["method"] = "noise-floor";

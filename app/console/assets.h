@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The console's page without its data, from console/ by the build: no library, no Node.js.
+// The console's page without data, generated from console/ by the build; no library, no Node.js.
 #pragma once
 
 #include <string_view>

@@ -28,7 +28,7 @@ struct ConsoleCall {
   bool json = false;
 };
 
-// Where finished pictures are stored, so that a second call with other controls draws nothing.
+// Folder of finished pictures, so that a second call with other controls draws nothing.
 std::string store_beside(const std::string& output) {
   fs::path path(output);
   return path.replace_extension(".layers").string();

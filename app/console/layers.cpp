@@ -47,7 +47,7 @@ void add(std::vector<float>& sum, const base::Image& image, const std::string& l
   }
 }
 
-// The light of these groups together; nothing where all weights are 0.
+// Weighted sum of these groups; no value if all weights are 0.
 std::optional<ConsoleLayer> weighted(const base::Image& image,
                                      const std::vector<std::string>& names,
                                      const std::vector<Rgb>& weights, const Range& range) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the lighting console shows: each camera's light by source, drawn to the scene's error, and
-// where its targets stand.
+// Data of the lighting console: each camera's light by source, rendered to the scene's error, and
+// the masks of its targets.
 #pragma once
 
 #include <functional>
@@ -17,14 +17,14 @@ namespace earthshine::app {
 
 // A fader: a lamp, a light group, the Sun, the Earth or ambient light.
 struct ConsoleLight {
-  std::string name;   // that `set` of [[lamps]] and `relight --set` know
+  std::string name;   // as used by `set` of [[lamps]] and `relight --set`
   std::string kind;   // "lamp", "group", "sun", "earth" or "ambient"
-  std::string group;  // of a lamp in the scene
+  std::string group;  // group of a lamp in the scene
 };
 
 struct ConsoleLayer {
   std::size_t light = 0;
-  std::optional<std::size_t> place;  // along the orbit; none: at every place
+  std::optional<std::size_t> place;  // orbit position; none: all positions
   std::vector<float> r, g, b;        // cd/m^2 at factor 1
 };
 
@@ -32,22 +32,22 @@ struct ConsoleView {
   const StudyCamera* camera = nullptr;
   double relative_noise = 0.0;  // of the picture of all lights
   double seconds = 0.0;
-  base::Image image;  // as drawn, with a layer per light group
+  base::Image image;  // as rendered, with a layer per light group
   std::vector<ConsoleLayer> layers;
   studies::ObjectMap objects;
   std::vector<studies::TargetView> targets;
 };
 
-// The call's scene with a light group for each lamp; for each light group where the scene has more
-// than `most_faders` lamps.
+// The call's scene with one light group per lamp, or with its own light groups if it has more than
+// `most_faders` lamps.
 inline constexpr std::size_t most_faders = 48;
 [[nodiscard]] studies::StudyFile console_study(const StudyCall& call,
                                                std::vector<double> positions_deg);
 
 [[nodiscard]] std::vector<ConsoleLight> console_lights(const StudyPart& part);
 
-// Draws every camera of the part in turn; `folder` stores finished pictures (StudyFrames). Throws
-// base::Error (Work) where it is interrupted.
+// Renders every camera of the part in turn; `folder` stores finished pictures (StudyFrames). Throws
+// base::Error (Work) if interrupted.
 void draw_views(const StudyPart& part, const std::string& folder, const Common& common,
                 const std::function<void(ConsoleView)>& take);
 

@@ -15,7 +15,7 @@ using Numbers = std::vector<std::uint16_t>;
 
 constexpr std::uint16_t sign_bit = 0x8000;
 
-// Whole numbers in the order of the values; both zeros are 0x8000.
+// Maps half floats to integers in the order of their values; both zeros are 0x8000.
 std::uint16_t ordered(std::uint16_t half) {
   const int magnitude = half & 0x7fff;
   return static_cast<std::uint16_t>((half & sign_bit) != 0 ? sign_bit - magnitude
@@ -48,7 +48,7 @@ int predicted(const Numbers& plane, std::size_t i, std::size_t columns) {
   return left + above - corner;
 }
 
-// The residuals' low bytes, then their high bytes; small ones of either sign are small numbers.
+// Low bytes of the residuals, then high bytes; zigzag coding makes small residuals small integers.
 void add_residuals(const Numbers& plane, std::size_t columns, std::vector<std::uint8_t>& bytes) {
   const std::size_t begin = bytes.size();
   bytes.resize(begin + 2 * plane.size());
@@ -79,7 +79,7 @@ std::uint16_t half_bits(float value) {
   const auto sign = static_cast<std::uint16_t>((bits >> 16) & sign_bit);
   const float magnitude = std::abs(value);
   if (!(magnitude < 65520.0F)) return static_cast<std::uint16_t>(sign | 0x7c00);
-  // Steps of 2^-24 below 2^-14, then 2^10 to each octave.
+  // Steps of 2^-24 below 2^-14, then 2^10 steps per octave.
   int power = -14;
   if (magnitude >= 0x1p-14F) power = std::ilogb(magnitude);
   const auto steps = static_cast<int>(std::nearbyint(std::ldexp(magnitude, 10 - power)));

@@ -16,7 +16,7 @@
 namespace earthshine::app {
 namespace {
 
-// All settings, also those without effect: the page's controls may give them one.
+// All settings, including inactive ones, which the page's controls may activate.
 Json all_settings(const degrade::CctvCamera& camera) {
   Json settings;
   degrade::visit_camera_fields(camera, [&](const char* name, const auto& value, auto&&...) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// console.html: layers, masks and settings of all cameras in one page that needs no network.
+// console.html: layers, masks and settings of all cameras in one page without network access.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@
 
 namespace earthshine::app {
 
-// What the page may take in bytes; beyond, browsers open it slowly.
+// Maximum size in bytes; browsers open larger pages slowly.
 inline constexpr std::size_t most_page_bytes = 30'000'000;
 
 class ConsolePage {
  public:
-  // layers_folder: where the layers are as EXR files, for the commands that the page shows; empty:
-  // nowhere.
+  // layers_folder: folder of the layers' EXR files, for the commands that the page shows; empty:
+  // none.
   ConsolePage(const StudyPart& part, const StudyCall& call, std::string layers_folder,
               const Common& common);
 
@@ -23,7 +23,7 @@ class ConsolePage {
   [[nodiscard]] std::string html() const;
 
  private:
-  // The name of the element that has the bytes; empty where there are none.
+  // Returns the name of the element that stores the bytes; empty for no bytes.
   [[nodiscard]] std::string stored(const std::string& bytes);
 
   const StudyPart& part_;

@@ -101,7 +101,7 @@ Frame frame_of(CachedResult kept) {
       stated.squared[pixel][part] = squares[pixel];
     }
   }
-  // A file has its layers in the order of their names.
+  // Files store layers sorted by name.
   frame.image = {kept.image.width, kept.image.height, {}};
   for (const Json& layer : facts.at("layers")) {
     const auto name = layer.get<std::string>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// earthshine merge: the call whose parts a folder holds, once more, with all work found there.
+// earthshine merge: repeats the call whose parts are in a folder, with all results found there.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -23,8 +23,8 @@ struct MergeCall {
 
 namespace fs = std::filesystem;
 
-// Whether the files that the call reads, as far as they are there still, lie in the other folder,
-// too. What stands behind an option may be written, and is not asked for.
+// Whether existing input files of the call are in the other folder too. Files after an option may
+// be outputs and are ignored.
 bool has_inputs_of(const PartsRecord& record, const fs::path& other) {
   for (std::size_t k = 0; k < record.arguments.size(); ++k) {
     if (k > 0 && record.arguments[k - 1].starts_with('-')) continue;
@@ -35,8 +35,8 @@ bool has_inputs_of(const PartsRecord& record, const fs::path& other) {
   return true;
 }
 
-// The record of a folder, which may have been renamed or copied since, alone or with the folder
-// that the call was made in: the call as it is to be made now, to work in this one.
+// The record of a folder that may have been renamed or copied, alone or with the folder of the
+// call: returns the call to be made now, for this folder.
 PartsRecord record_here(const fs::path& folder) {
   PartsRecord record = read_parts_record(folder);
   const auto [word, from] = output_in(record.arguments);
@@ -69,7 +69,7 @@ PartsRecord record_here(const fs::path& folder) {
   return record;
 }
 
-// In single quotes where a shell would take the word for something else.
+// In single quotes if a shell would change the word.
 std::string shell_word(const std::string& word) {
   const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -81,7 +81,7 @@ std::string shell_word(const std::string& word) {
   return quoted + "'";
 }
 
-// File names of the call are read where it was made.
+// File names of the call are relative to its folder.
 void go_to(const std::filesystem::path& folder) {
   std::error_code problem;
   std::filesystem::current_path(folder, problem);

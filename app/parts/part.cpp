@@ -41,7 +41,7 @@ std::optional<std::uint64_t> number_in(const char* variable) {
   throw Error(Blame::Input, "--part auto", found, {}, remedy);
 }
 
-// Slurm tells where the array begins and how many tasks it has.
+// Slurm provides the first index and the number of tasks of an array.
 void read_array(PartCall& part) {
   const auto task = number_in("SLURM_ARRAY_TASK_ID"), count = number_in("SLURM_ARRAY_TASK_COUNT");
   if (!task) {
@@ -59,7 +59,7 @@ void read_array(PartCall& part) {
   part.count = *count;
 }
 
-// PBS tells the index alone, as PBS_ARRAY_INDEX (PBS Professional, OpenPBS) or PBS_ARRAYID
+// PBS provides only the index, as PBS_ARRAY_INDEX (PBS Professional, OpenPBS) or PBS_ARRAYID
 // (Torque).
 void read_index(PartCall& part) {
   for (const char* variable : {"SLURM_ARRAY_TASK_ID", "PBS_ARRAY_INDEX", "PBS_ARRAYID"}) {
@@ -79,7 +79,7 @@ void read_index(PartCall& part) {
 
 PartCall::Task read_part(const std::string& text, PartCall& part) {
   using Task = PartCall::Task;
-  part.begins = text == "begin";  // not for people: main.cpp, of ranks
+  part.begins = text == "begin";  // internal: set by main.cpp for ranks
   if (text == "solve" || part.begins) return Task::Solve;
   if (text == "merge") return Task::Merge;
   if (text == "auto") {
@@ -118,20 +118,20 @@ std::optional<PartsRecord> record_in(const fs::path& folder) {
     json.at("arguments").get_to(record.arguments);
     record.digests = json.at("digests");
     if (record.parts <= most_parts && record.digests.is_object()) return record;
-  } catch (const Json::exception&) {  // told below
+  } catch (const Json::exception&) {  // reported below
   }
   throw Error(Blame::Input, path.string(), "is not the record of a call in parts", {},
               "Remove it, and run the parts again: finished work is kept");
 }
 
-// Names of the digests that are not the same.
+// Names of the digests that differ.
 std::vector<std::string> differences(const PartsRecord& mine, const PartsRecord& there) {
   std::vector<std::string> differ;
   const auto without_output = [](std::vector<std::string> arguments) {
     if (std::string* output = output_in(arguments).word) output->clear();
     return arguments;
   };
-  // That one is where the record lies, however it is spelt.
+  // -o refers to the record's own folder, in any spelling.
   if (without_output(mine.arguments) != without_output(there.arguments)) {
     differ.push_back(fmt::format("its arguments (there: {})", fmt::join(there.arguments, " ")));
   }
@@ -187,7 +187,7 @@ Share share_of(const PartCall& part, std::size_t items) {
 }
 
 std::size_t part_of(std::size_t item, std::size_t items, std::size_t parts) {
-  // The first part whose share ends behind the item: items K / N > item.
+  // The first part whose share ends after the item: items K / N > item.
   return ((item + 1) * parts + items - 1) / items;
 }
 
@@ -206,7 +206,7 @@ PartsRecord read_parts_record(const fs::path& folder) {
 }
 
 void join_parts(const fs::path& folder, const Common& common, const Json& digests, PartCall& part) {
-  if (base::another_rank_writes()) return;  // the first compares for all
+  if (base::another_rank_writes()) return;  // the first rank compares for all
   const bool merges = part.task == PartCall::Task::Merge;
   PartsRecord mine{part.count, fs::current_path(), part_free(common.arguments), digests};
   mine.digests["program"] = build_id();
@@ -231,7 +231,7 @@ void join_parts(const fs::path& folder, const Common& common, const Json& digest
   }
   if (merges) {
     part.count = there.parts;
-  } else if (there.parts == 0 && part.count > 0) {  // a solve came first
+  } else if (there.parts == 0 && part.count > 0) {  // a solve was the first call
     base::write_text(folder / parts_file, dump(json_of(mine)));
   }
 }

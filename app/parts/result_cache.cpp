@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Files keep channels by name, whatever their order in memory.
+// Files store channels by name, independent of their order in memory.
 std::string digest_of_image(const base::Image& image) {
   std::vector<const base::Channel*> channels;
   for (const base::Channel& channel : image.channels) channels.push_back(&channel);
@@ -37,7 +37,7 @@ std::string digest_of_image(const base::Image& image) {
   return digest.text();
 }
 
-// The facts have a digest of their own: a changed digit is found when they are read.
+// The facts have their own digest, which detects any change.
 std::string text_of_part(const Json& cache_key, const Json& facts, const Json& picture) {
   return dump({{"cache_key", cache_key},
                {"facts", facts},
@@ -54,8 +54,8 @@ Json scene_cache_key(const LoadedScene& loaded) {
   for (const radiosity::ScenePart& part : radiosity::scene_parts(loaded.scene, loaded.groups)) {
     cache_key[part.key] = hex(part.digest);
   }
-  // What a picture reads besides; taken apart whole, so that another member does not compile until
-  // it is decided about.
+  // Further inputs of a picture. The structured binding makes a new member a compile error until it
+  // is decided whether it belongs here.
   base::Digest lobes;
   for (const scenes::Triangle& triangle : loaded.scene.triangles) {
     const auto& [name, diffuse, specular, shininess, mirror, transmit, ior, emit, group, sheet,

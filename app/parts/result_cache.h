@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The finished parts of a study, so that a run that was ended goes on from them.
+// Stored parts of a study, from which an interrupted run continues.
 //
-// Each is two files in DIR/points: KEY.exr, its luminance (of a reference also the variance), and
-// KEY.json, written after it: the cache_key of the scene, the view, the settings and the program,
-// what it cost, and a digest of the picture. KEY is a digest of the cache_key, so that anything
-// that changed has other files. Errors are not kept: they follow from the pictures.
+// Each part has two files in DIR/points: KEY.exr, its luminance (for a reference also the
+// variance), and then KEY.json: the cache_key of scene, view, settings and program, its cost, and a
+// digest of the picture. KEY is a digest of the cache_key, so that changed input has other files.
+// Errors are not stored: they follow from the pictures.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@
 
 namespace earthshine::app {
 
-// Digests of everything in the scene that a picture can depend on, as a JSON object.
+// Digests of everything in the scene that a picture may depend on, as a JSON object.
 [[nodiscard]] Json scene_cache_key(const LoadedScene& loaded);
 [[nodiscard]] Json camera_cache_key(const scenes::Camera& camera);
 
@@ -28,17 +28,17 @@ struct CachedResult {
 
 class ResultCache {
  public:
-  // Makes the folder; throws base::Error where that cannot be or nothing can be written in it.
+  // Makes the folder; throws base::Error if it cannot be made or written.
   explicit ResultCache(const std::filesystem::path& folder);
 
-  // None if there is no such part. One that is there but torn, foreign or not of its picture is
-  // named in `said` and counts as not there.
+  // No value if the part is missing. A part that is incomplete, foreign or does not match its
+  // picture is described in `said` and counts as missing.
   [[nodiscard]] std::optional<CachedResult> find(const Json& cache_key, std::string& said) const;
-  // Whether its facts are there, whole; its picture is not looked at.
+  // Whether its facts are complete; does not check the picture.
   [[nodiscard]] bool has(const Json& cache_key) const;
   void keep(const Json& cache_key, const CachedResult& part) const;
 
-  // The same of parts that are facts alone, without a picture.
+  // Parts that are facts only, without a picture.
   [[nodiscard]] std::optional<Json> find_facts(const Json& cache_key, std::string& said) const;
   void keep_facts(const Json& cache_key, const Json& facts) const;
 

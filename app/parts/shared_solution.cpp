@@ -22,7 +22,7 @@ bool is_there(const fs::path& file) {
   return fs::exists(file, ignored);
 }
 
-// Whoever reads it first says what all must read.
+// The first reader stores the digest that all must find.
 void agree_on_digest(const fs::path& file, const std::string& digest) {
   const fs::path told = file.string() + ".json";
   if (!is_there(told) && base::write_new_text(told, dump({{"digest", digest}}))) return;

@@ -25,7 +25,7 @@ raytrace::Frame trace(const Studio& studio, const scenes::Camera& camera,
       progress);
 }
 
-// Paths are as many as quality.gather_rays says.
+// quality.gather_rays determines the number of paths.
 bool as_set(const raytrace::RenderOptions& options) {
   return options.indirect == raytrace::Indirect::Paths;
 }

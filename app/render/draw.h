@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One camera's picture, drawn as the call wants it: with the scene's settings, within a time, or
-// until it is as exact as wanted.
+// Renders one camera's picture: with the scene's settings, within a time limit, or to a wanted
+// error.
 #pragma once
 
 #include "app/call/render_call.h"
@@ -10,34 +10,34 @@ namespace earthshine::app {
 
 struct Drawn {
   raytrace::Frame frame;
-  raytrace::RenderOptions options;  // that it was drawn with
+  raytrace::RenderOptions options;  // used settings
   raytrace::ErrorBudget errors;
-  std::vector<raytrace::Step> steps;  // with an error to reach: of the solution, then the picture's
+  std::vector<raytrace::Step> steps;  // with a wanted error: of the solution, then of the picture
   raytrace::Limit limit = raytrace::Limit::None;
-  double seconds_to_go = 0.0;  // about, until the wanted error, if it was not reached
+  double seconds_to_go = 0.0;  // estimate until the wanted error, if it was not reached
 };
-// Rays alone, without a statement of what they are worth.
+// Renders without a stated error.
 [[nodiscard]] raytrace::Frame draw_frame(const Studio& studio, const scenes::Camera& camera,
                                          const raytrace::RenderOptions& options);
 [[nodiscard]] Drawn draw_picture(const Studio& studio, const scenes::Camera& camera,
                                  StageTimes& times);
 
-// Size, rays, patches and seconds of a frame, as --json reports them.
+// Size, rays, patches and seconds of a frame, for --json.
 [[nodiscard]] Json frame_json(const Studio& studio, const scenes::Camera& camera,
                               const raytrace::Frame& frame, const StageTimes& times);
-// The header of its EXR file: provenance, place in the whole picture, stated error.
+// The header of its EXR file: provenance, position in the whole picture, stated error.
 [[nodiscard]] base::ExrHeader picture_header(const Studio& studio, const scenes::Camera& camera,
                                              const Drawn& drawn);
 
-// Where the light at a pixel comes from: by source, with all paths, and by last bounce.
+// Origin of a pixel's light: by source, with all paths, and by last bounce.
 
-// "light_by": per light group `luminance_cd_m2` and `share`, from the frame's layers, and
-// "light_from": `from`, `reflected`, `share` of the diffuse light at the pixel's centre
-// (studies/why/last_bounce.h), "others", the sum of the small ones, and "left_over", the share that
-// is neither. frame: one pixel, with per_light.
+// "light_by": per light group `luminance_cd_m2` and `share`, from the frame's layers. "light_from":
+// `from`, `reflected`, `share` of the diffuse light at the pixel's centre
+// (studies/why/last_bounce.h). "others": sum of small contributions. "left_over": the remaining
+// share. frame: one pixel, with per_light.
 [[nodiscard]] Json probe_json(const Studio& studio, const scenes::Camera& camera,
                               const raytrace::RenderOptions& options, const raytrace::Frame& frame);
-// For people, of what probe_json gives.
+// Text for people from probe_json.
 [[nodiscard]] std::string probe_text(const Json& probe);
 
 }  // namespace earthshine::app

@@ -14,7 +14,7 @@
 namespace earthshine::app {
 namespace {
 
-// A stage runs where one of the cameras needs it; the first that does gives the reason.
+// A stage runs if one of the cameras needs it; the first such camera gives the reason.
 void add_cctv_rows(Json& rows, const LoadedScene& loaded, const RenderCall& call) {
   Json stages = Json::array();
   for (const scenes::Camera* camera : loaded.asked.cameras) {
@@ -66,7 +66,7 @@ Expectation expect(const LoadedScene& loaded, const RenderCall& call, const Comm
   for (const scenes::Camera* camera : loaded.asked.cameras) {
     options.push_back(picture_options(call, common, loaded, *camera));
   }
-  // Looked at once, for the memory and for the solver's seconds.
+  // Cast once, for the memory and for the solver's seconds.
   studies::MemoryCase sizes =
       studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
   if (!loaded.effects.solution) {
@@ -78,7 +78,7 @@ Expectation expect(const LoadedScene& loaded, const RenderCall& call, const Comm
   Expectation expected;
   expected.pilot = studies::expect_costs({loaded.world(query), solver, sizes.row_entries},
                                          loaded.asked.cameras, options);
-  // The pilot's own solve only lights its pictures then.
+  // The pilot's own solve then only supplies light.
   if (!call.solution.empty()) expected.pilot.bill.solve = {};
   expected.costs = studies::effect_costs(expected.pilot.bill, loaded.effects);
   studies::EffectCost cctv{"cctv"};
@@ -112,7 +112,7 @@ const studies::EffectCost* find_cost(const std::vector<studies::EffectCost>& cos
   return found == costs.end() ? nullptr : &*found;
 }
 
-// What of the memory is there for an effect's sake.
+// Memory used because of an effect.
 double memory_mib(const studies::MemoryNeed& need, const std::string& effect) {
   double bytes = 0.0;
   for (const studies::MemoryPart& part : need.parts) {
@@ -154,7 +154,7 @@ Json report_json(const LoadedScene& loaded, const RenderCall& call, const Expect
                  const StageTimes& times, double cpu_seconds) {
   const double threads = base::available_threads();
   studies::Bill bill;
-  // What a solution cost that was read stands with whoever solved it.
+  // A solution that is read costs nothing here.
   if (call.solution.empty()) bill.solve = solved;
   studies::EffectCost cctv{"cctv"};
   for (const Picture& picture : pictures) {

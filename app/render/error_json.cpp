@@ -35,7 +35,7 @@ Json json_of(const raytrace::ErrorEstimate& error) {
   return {{"estimate", error.estimate}, {"bound_95", error.bound_95}};
 }
 
-// Null where nothing is seen that could be wrong.
+// Null if nothing is visible that could be wrong.
 Json json_of(const raytrace::ErrorEstimate& error, bool known) {
   return known ? json_of(error) : Json{{"estimate", nullptr}, {"bound_95", nullptr}};
 }
@@ -58,7 +58,7 @@ Json json_of(const raytrace::ErrorEstimate& total, bool known, const Parts& part
   return json;
 }
 
-// why_unknown: where none is known.
+// why_unknown: the reason, if unknown.
 std::string text_of(const raytrace::ErrorEstimate& total, bool known, const char* why_unknown,
                     const Parts& parts, const std::vector<std::string>& not_captured) {
   std::string text = fmt::format("no error can be told: {}", why_unknown);
@@ -116,7 +116,7 @@ void add_steps(Json& json, raytrace::Limit limit, const std::vector<raytrace::St
   }
 }
 
-// What was chosen to reach the error, or why it is not reached.
+// The settings that reach the error, or why it is not reached.
 std::string choice_text(raytrace::Limit limit, const std::vector<raytrace::Step>& steps,
                         std::optional<double> wanted, double seconds_to_go) {
   if (!wanted || steps.empty()) return "";

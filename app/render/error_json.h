@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The error of a picture, or of a solution alone, as the commands show it.
+// The error of a picture, or of a solution alone, for output.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@
 namespace earthshine::app {
 
 // {"estimate", "bound_95", "wanted", "limit", "steps", "parts": {name: {"estimate", "bound_95"}},
-// "not_captured", "targets"}; estimates are null where nothing is seen that could be wrong.
+// "not_captured", "targets"}; estimates are null if nothing is visible that could be wrong.
 [[nodiscard]] Json error_json(const Drawn& drawn, std::optional<double> wanted);
 
 [[nodiscard]] Json error_json(const Solved& light, std::optional<double> wanted);
@@ -25,13 +25,12 @@ void add_errors(base::ExrHeader& header, const Drawn& drawn);
 [[nodiscard]] std::string error_text(const Drawn& drawn, std::optional<double> wanted);
 [[nodiscard]] std::string error_text(const Solved& light, std::optional<double> wanted);
 
-// What an error that a limit came before would still take, after so many seconds: time goes with
-// the inverse of the squared error, patches and rays alike. 0: nothing, or more time would not
-// help.
+// Predicted further seconds until the wanted error, after `seconds`: time is inversely proportional
+// to the squared error, for patches and rays. 0: none, or more time would not help.
 [[nodiscard]] double seconds_to_go(const Solved& light, std::optional<double> wanted,
                                    double seconds);
 
-// Throws StoppedShort where the call wants an error that a limit has kept it from.
+// Throws StoppedShort if a limit prevented the error that the call wants.
 void check_reached(const SceneInput& call, raytrace::Limit limit, double wanted);
 
 }  // namespace earthshine::app

@@ -19,7 +19,7 @@
 namespace earthshine::app {
 namespace {
 
-// Broken off where the call's time limit, of the whole command, or a stop comes first.
+// Stopped by the time limit of the whole command, or by a stop request.
 Solved solve_in_time(const LightCall& wanted, const radiosity::SolveOptions& solver,
                      StageTimes& times) {
   const double before = times.total(), limit = wanted.call.time_limit_s;
@@ -42,8 +42,8 @@ Solved solve_in_time(const LightCall& wanted, const radiosity::SolveOptions& sol
   return light;
 }
 
-// Within a time limit the solve gets about a fifth of the time: a coarse one tells how fast the
-// machine and the scene are. Patches and rays each grow as one over the error that they serve.
+// Within a time limit the solve gets about a fifth of the time: a coarse solve measures the speed.
+// Patches and rays are each inversely proportional to their error.
 Solved solve_within(const LightCall& wanted, double seconds, StageTimes& times) {
   constexpr double coarse = 0.2, share = 0.2, worthwhile = 0.5;
   scenes::Quality quality = wanted.loaded.scene.quality;
@@ -95,7 +95,7 @@ radiosity::SolutionOrigin origin_of(const LoadedScene& loaded,
 
 radiosity::SolveOptions solver_of(const RenderCall& call, const scenes::Scene& scene,
                                   const Common& common) {
-  // A solution that is read keeps to the settings that it was made with.
+  // A solution from a file keeps the settings of its solve.
   if (!call.solution.empty() || !steers(call, scene)) return solve_options(scene, common);
   return raytrace::picture_solver(scene, scene.quality, common.seed);
 }
@@ -107,7 +107,7 @@ Solved solve_as_exactly(const ExactCall& call, StageTimes& times) {
   double in_stages = 0.0;
   raytrace::Wanted wanted = wanted_error(loaded, call.common, call.time_limit_s, times);
   wanted.stop = Interrupt::asked;
-  std::optional<Interrupt> interrupt;  // before the first solve is done nothing could be kept
+  std::optional<Interrupt> interrupt;  // before the first solve there is no partial result
   const raytrace::SolveListener listen = [&](const radiosity::SolveReport& report) {
     if (!interrupt) interrupt.emplace();
     times.add(report.seconds);

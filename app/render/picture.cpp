@@ -70,7 +70,7 @@ Json frame_json(const Studio& studio, const scenes::Camera& camera, const raytra
                {"relative_noise", report.relative_noise},
                {"finished_share", report.finished_share},
                {"partial", report.stopped}};
-  // What a solution cost by kind of light is not kept in its file.
+  // Solution files do not store the cost by kind of light.
   if (!studio.call.solution.empty() || studio.parts != nullptr) json["rays"].erase("direct_by");
   return json;
 }
@@ -89,7 +89,7 @@ base::ExrHeader picture_header(const Studio& studio, const scenes::Camera& camer
 
 namespace {
 
-// The single pixel of --only-pixel, layer by layer.
+// The pixel of --only-pixel, layer by layer.
 Json pixel_json(const scenes::Scene& scene, const raytrace::Frame& frame) {
   const auto value = [&](const char* channel) {
     return double(frame.image.find(channel)->values.front());
@@ -242,7 +242,7 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
     if (call.probe) pixel.update(probe_json(studio, camera, options, frame));
     if (!call.json) {
       const std::string text = pixel_text(pixel);
-      // The first line says which pixel, what follows its layers.
+      // The first line names the pixel, the next lines its layers.
       print(call.probe ? text.substr(0, text.find('\n') + 1) + probe_text(pixel) : text);
     }
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// earthshine plan: which effects will run and why, how many rays and how much memory that is.
-// Traces a few rows of form factors for the memory, and a small run of the whole for the seconds.
+// earthshine plan: which effects will run and why, with rays, memory and time. Traces a few rows of
+// form factors for the memory, and a small run of everything for the seconds.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ Json images_of(const scenes::Scene& scene, const RenderCall& call, const scenes:
   return images;
 }
 
-// Bytes of ranks: of the first, which has the vectors of the linear solve, and of each other.
+// Bytes per rank: of the first, which has the vectors of the linear solve, and of the others.
 struct RankBytes {
   double first = 0.0, others = 0.0;
   void take_most(studies::MemoryCase sizes) {
@@ -67,8 +67,8 @@ struct RankBytes {
   }
 };
 
-// Of the solution alone, with its error stated, and of each camera's picture of its own size, the
-// solution included. Returns the most of them where so many ranks divide the matrix; 0: no mpirun.
+// Memory of the solution with its error, and of each camera's picture in its own size, including
+// the solution. Returns the maximum for ranks that divide the matrix; 0: no mpirun.
 RankBytes add_memory(Json& report, const LoadedScene& loaded, const RenderCall& call,
                      const Common& common, const scenes::RayQuery& query, int ranks,
                      std::size_t patches) {
@@ -100,7 +100,7 @@ RankBytes add_memory(Json& report, const LoadedScene& loaded, const RenderCall& 
   return most;
 }
 
-// Of the solution or the largest picture.
+// Maximum over the solution and the pictures.
 double most_mib(const Json& report) {
   double most = report["memory"]["total_mib"].get<double>();
   for (const Json& image : report["images"]) {
@@ -109,7 +109,7 @@ double most_mib(const Json& report) {
   return most;
 }
 
-// What `ranks` processes of earthshine-mpi take.
+// Cost with `ranks` processes of earthshine-mpi.
 void add_ranks(Json& report, const studies::Bill& bill, int ranks, const RankBytes& bytes) {
   double pixels = 0.0;
   for (const Json& image : report["images"]) {
@@ -198,7 +198,7 @@ Json report_of(const RenderCall& call, const Common& common, int ranks) {
   return plan_json(loaded, call, common, ranks);
 }
 
-// Said, and not refused, as render does: rows may turn out less full.
+// A warning, not an error as in render: rows may turn out less full.
 std::string too_much_text(const Json& report) {
   const auto free_bytes = base::free_memory_bytes();
   if (!free_bytes) return "";

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// earthshine render: scene to linear EXR, a viewable PNG and the CCTV picture, for one camera or
-// several.
+// earthshine render: renders one or several cameras to linear EXR, PNG and the CCTV picture.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +30,7 @@ namespace {
 using base::Blame;
 using base::Error;
 
-// The range sensor and lines over a photograph need none, and leave nothing to say about it.
+// The range sensor, and lines over a photograph, use no light.
 void check_without_light(const RenderCall& call) {
   if (!call.range_alone() && !call.wire_alone()) return;
   const bool wire = call.wire_alone();
@@ -101,7 +100,7 @@ void check_call(const RenderCall& call, bool quiet) {
   }
 }
 
-// What a part cannot do alone, or what depends on the process.
+// Rejects options that a part cannot handle alone, or that depend on the process.
 void check_part(const RenderCall& call, bool quiet) {
   if (!call.part.in_parts()) return;
   note_unused_json(call.part, call.json, quiet);
@@ -119,7 +118,7 @@ void check_part(const RenderCall& call, bool quiet) {
   }
 }
 
-// "views/bay.exr" and camera A give "views/bay-A.exr".
+// "views/bay.exr" and camera A make "views/bay-A.exr".
 std::string with_camera(const std::string& path, const std::string& camera) {
   if (path.empty() || path.starts_with("/dev/")) return path;
   const std::filesystem::path whole(path);
@@ -218,7 +217,7 @@ void run(RenderCall call, const Common& common) {
   if (call.part.in_parts()) {
     parts.emplace(LightCall{call, common, loaded, query}, call.part, cameras_of(pictures));
   }
-  // Of a solution that several parts read nothing could be kept.
+  // A solution shared by several parts has no partial result.
   std::optional<Interrupt> interrupt;
   if (!parts) interrupt.emplace();
   const Solved light = parts

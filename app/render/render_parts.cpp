@@ -17,7 +17,7 @@
 namespace earthshine::app {
 namespace {
 
-// All that decides a picture besides scene and solution.
+// All input of a picture besides scene and solution.
 Json settings_of(const RenderCall& call, const raytrace::RenderOptions& how) {
   const raytrace::Window window = raytrace::window_of(how);
   return {{"picture", {how.columns, how.rows}},
@@ -84,7 +84,7 @@ raytrace::Window RenderParts::picture_of(std::size_t camera) const {
 std::vector<RenderParts::Piece> RenderParts::pieces() const {
   std::vector<Piece> pieces;
   const bool whole = steers(wanted_.call, wanted_.loaded.scene);
-  std::vector<std::size_t> first = {0};  // of each camera's items among all
+  std::vector<std::size_t> first = {0};  // index of each camera's first item
   for (const raytrace::RenderOptions& options : options_) {
     const int rows = raytrace::window_of(options).rows;
     first.push_back(first.back() + (whole ? 1 : static_cast<std::size_t>(rows)));
@@ -161,7 +161,7 @@ raytrace::Frame RenderParts::joined(const scenes::Camera& camera) const {
     number = piece.camera;
     std::string said;
     std::optional<CachedResult> kept = store_->find(key_of(piece), said);
-    if (!kept) refuse_to_merge(folder_, {{said, piece.part}});  // it was there a moment ago
+    if (!kept) refuse_to_merge(folder_, {{said, piece.part}});  // it existed a moment ago
     frames.push_back(frame_of(std::move(*kept)));
   }
   return raytrace::join(frames, raytrace::window_of(options_[number]));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `render --part`: the rows of all pictures of a call, one camera after the other, in shares.
-// Pictures whose pixels are told by all of the picture (--error) are shared out whole.
+// `render --part`: processes share the rows of all pictures of a call, camera by camera. Pictures
+// whose settings depend on the whole picture (--error) are not divided.
 #pragma once
 
 #include <optional>
@@ -15,20 +15,20 @@ namespace earthshine::app {
 
 class RenderParts {
  public:
-  // `light` of the scene before it is solved: its solver's settings. Joins the parts' folder,
-  // FILE.exr.parts; throws base::Error (Input) where it belongs to another call.
+  // `light`: solver settings and scene, before the solve. Opens the parts' folder, FILE.exr.parts;
+  // throws base::Error (Input) if it belongs to another call.
   RenderParts(const LightCall& wanted, PartCall& part,
               const std::vector<const scenes::Camera*>& cameras);
 
-  // Of all parts: solved here or by another process.
+  // The common solution, made here or by another process.
   [[nodiscard]] Solved light(StageTimes& times);
 
-  // Draws what is not there yet of this part's share. Throws base::Error (Work) once it is
-  // interrupted; finished pictures are kept.
+  // Renders the missing pictures of this part. Throws base::Error (Work) if interrupted; finished
+  // pictures stay stored.
   void draw_share(const Studio& studio) const;
-  // Throws base::Error (Work) where anything is not there, with the command that makes it.
+  // Throws base::Error (Work) if a part is missing, with the command that makes it.
   void check_complete() const;
-  // A camera's picture from the parts.
+  // A camera's picture, joined from the parts.
   [[nodiscard]] raytrace::Frame joined(const scenes::Camera& camera) const;
 
  private:
@@ -44,12 +44,12 @@ class RenderParts {
   const LightCall wanted_;
   const PartCall& part_;
   std::vector<const scenes::Camera*> cameras_;
-  std::vector<raytrace::RenderOptions> options_;  // of each camera
+  std::vector<raytrace::RenderOptions> options_;  // per camera
   radiosity::SolveOptions solver_;
   std::filesystem::path folder_;
   Json scene_key_, digests_;
   std::optional<ResultCache> store_;
-  std::string solution_;  // its digest; empty: none is read
+  std::string solution_;  // its digest; empty: none
 };
 
 }  // namespace earthshine::app

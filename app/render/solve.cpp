@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// earthshine solve: radiosity alone, and where the light went.
+// earthshine solve: radiosity only, with its energy ledger.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -119,7 +119,7 @@ double luminous(const Json& rgb) {
   return base::luminance({rgb[0].get<double>(), rgb[1].get<double>(), rgb[2].get<double>()});
 }
 
-// From what is given to where it ends. Columns in which no group has anything are left out.
+// Energy from source to sink. Columns without values are omitted.
 std::string ledger_text(const Json& groups) {
   constexpr std::array<std::array<const char*, 2>, 7> all = {{{"given_lm", "given lm"},
                                                               {"escaped_at_once_lm", "out at once"},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What report/ puts into the program at build time. All but the style are empty where there was no
-// Node.js to bundle the script.
+// Files of report/ that the build embeds. Without Node.js at build time all but the style are
+// empty.
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the report shows a study's results: words of its verdicts, columns, tables.
+// Presentation of a study's results: words of verdicts, columns, tables.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@
 
 namespace earthshine::app {
 
-// How a verdict is shown.
+// Presentation of a verdict.
 struct VerdictWords {
-  const char* mark;  // what a cell of the matrix shows, beside its colour
-  const char* rest;  // what makes a word of the mark
+  const char* mark;  // text of a cell of the matrix, besides its colour
+  const char* rest;  // completes the mark to a word
   const char* text;
 };
 inline constexpr std::array<VerdictWords, 7> verdict_words = {{
@@ -33,13 +33,13 @@ inline constexpr std::array<VerdictWords, 7> verdict_words = {{
   return verdict <= studies::Verdict::Detected;
 }
 
-// The figures of a result, one column each.
+// Numbers of a result, one column each.
 enum class Form : std::uint8_t { Plain, Count, Chance, Percent };
 struct FigureColumn {
   Figure of;
   const char* title;
   Form form;
-  bool brief;  // also shown of a study so large that not all can be
+  bool brief;  // also shown for studies too large to show all
 };
 using studies::EyeSight, studies::MonitorSight, studies::Probability, studies::SignalSight;
 inline constexpr std::array sight_columns = {
@@ -83,16 +83,16 @@ inline constexpr std::array signal_columns = {
     FigureColumn{eye_chance_of<&Probability::identify>, "eye: P identify", Form::Chance, false},
 };
 
-// A table of the report: conditions of one scene that stand side by side. Of an orbit one per lamp
-// setting, by rising position; conditions without a position are together in one.
+// A table of the report: adjacent conditions of one scene. For an orbit one per lamp setting, by
+// ascending position; conditions without a position share one table.
 struct Block {
   std::size_t scene;
-  std::string lamps;  // "" where the conditions have no position
+  std::string lamps;  // "" if the conditions have no position
   std::vector<std::size_t> conditions;
 };
 [[nodiscard]] std::vector<Block> blocks_of(const StudyResults& study);
 
-// The results of a block by camera, target and place in the block's conditions.
+// The results of a block by camera, target and index in the block's conditions.
 [[nodiscard]] std::vector<std::size_t> results_of(const StudyResults& study, const Block& block);
 
 }  // namespace earthshine::app

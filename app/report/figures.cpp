@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every result with its figures.
+// All results with their numbers.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace earthshine::app {
 namespace {
 
-// Of more results than these a page with every figure would be too large to open at once.
+// With more results a page with all numbers would be too large.
 constexpr std::size_t most_in_full = 1200;
 constexpr std::size_t most_open = 40;
 

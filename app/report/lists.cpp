@@ -67,7 +67,7 @@ std::string conditions_table(const StudyResults& study) {
         figure(condition.earth_error, Form::Percent));
   }
   if (rows.empty()) return "";
-  // On paper the summary's columns say it.
+  // In print the summary's columns have this information.
   return "<details class=\"rows unprinted\"><summary>" +
          counted(study.conditions.size(), "condition", "conditions") + "</summary>\n" +
          table("Conditions",
@@ -77,7 +77,7 @@ std::string conditions_table(const StudyResults& study) {
          "</details>\n";
 }
 
-// `depth`: of what is nested without end, the rest is not shown.
+// `depth`: nesting level; deeper levels are not shown.
 std::string value_html(const Json& value, int depth = 0) {
   if (depth > 6) return "…";
   if (value.is_null()) return dash;
@@ -113,7 +113,7 @@ std::string key_values(const std::string& caption, const std::string& key, const
   return rows.empty() ? "" : table(caption, {key, "Value"}, rows);
 }
 
-// "picture s1 A" with the scene's name; without it in a study of one scene.
+// "picture s1 A" with the scene's name, omitted in a study of one scene.
 std::string stage_of(const StudyResults& study, const StudyCost& cost) {
   std::string stage = cost.stage + " ";
   for (std::size_t k = 0; k < study.scenes.size(); ++k) {

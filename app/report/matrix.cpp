@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The summary: camera and target down, conditions across, a cell the verdict.
+// The summary: rows are camera and target, columns are conditions, cells show the verdict.
 #include <fmt/format.h>
 
 #include <map>
@@ -19,7 +19,7 @@ std::string legend() {
   return html + "</ul>\n";
 }
 
-// Neighbours of the same phase share a heading.
+// Adjacent conditions of the same phase share a heading.
 std::string phase_row(const StudyResults& study, const Block& block) {
   std::string cells;
   bool known = false;
@@ -31,7 +31,7 @@ std::string phase_row(const StudyResults& study, const Block& block) {
       ++end;
     }
     known = known || !phase.empty();
-    // A narrow one is written upward, lest it widens its columns.
+    // A narrow heading is written vertically, so that it does not widen its columns.
     cells += fmt::format(
         "<th scope=\"colgroup\" colspan=\"{}\" class=\"phase {}{}\"><span>{}</span></th>", end - k,
         phase.empty() ? "none" : phase, end - k < 4 ? " narrow" : "", phase.empty() ? dash : phase);
@@ -61,7 +61,7 @@ ThumbnailOf thumbnails_of(const StudyResults& study) {
   return found;
 }
 
-// shown: which small picture goes with it, "" for none.
+// shown: its thumbnail, "" for none.
 std::string cell(const StudyResults& study, std::size_t result, const std::string& shown) {
   const studies::Verdict verdict = study.results[result].sight.verdict;
   const VerdictWords& words = words_of(verdict);
@@ -75,7 +75,7 @@ std::string row(const StudyResults& study, const Block& block, std::size_t camer
   std::string cells, shown;
   std::size_t seen = 0;
   for (const std::size_t k : block.conditions) {
-    // Between two pictures no verdict of this camera changes: the last one stands for the place.
+    // Between two thumbnails no verdict of this camera changes: uses the previous one.
     const auto small = thumbnails.find({camera, k});
     if (small != thumbnails.end()) shown = fmt::format(" data-p={}", small->second);
     const auto found = by_condition.find(k);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The orbit in words and as a drawing: the Earth, the Sun and the bay's axis at four positions.
+// The orbit as text and as a drawing: the Earth, the Sun and the bay's axis at four positions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 namespace earthshine::app {
 namespace {
 
-// Seen from the north of the orbit, so that the motion is counterclockwise; the Sun at the left.
-// In units of the SVG, not to scale.
+// Seen from the orbit's north, so that motion is counterclockwise; the Sun is at the left. SVG
+// units, not to scale.
 constexpr double centre_x = 180.0, centre_y = 108.0, earth_radius = 40.0, orbit_radius = 62.0;
 constexpr double arrow = 26.0;
 
@@ -27,14 +27,15 @@ Point on_orbit(double position_deg, double radius) {
   return {centre_x - radius * std::cos(phi), centre_y + radius * std::sin(phi)};
 }
 
-// An arc of the orbit, `from` to `to` along the motion.
+// An arc of the orbit from `from` to `to` along the motion.
 std::string arc(double from_deg, double to_deg) {
   const Point from = on_orbit(from_deg, orbit_radius), to = on_orbit(to_deg, orbit_radius);
   return fmt::format("M{:.1f} {:.1f}A{} {} 0 {} 0 {:.1f} {:.1f}", from.x, from.y, orbit_radius,
                      orbit_radius, to_deg - from_deg > 180.0 ? 1 : 0, to.x, to.y);
 }
 
-// Out of the bay. Where it points out of the orbit's plane: a dot toward the reader, a cross away.
+// Direction of the bay's axis. Components out of the orbital plane: a dot toward the reader, a
+// cross away.
 std::string axis(const BayAxis& bay) {
   const double phi = base::radians(bay.position_deg);
   const Point at = on_orbit(bay.position_deg, orbit_radius);

@@ -19,7 +19,7 @@ namespace earthshine::app {
 namespace {
 
 std::string head(const StudyResults& study, bool plain) {
-  // Nothing may be loaded, and of scripts only the program's own may run.
+  // Nothing may be loaded; only the program's own script may run.
   const std::string scripts = plain ? "'none'" : "'" + std::string(report_script_hash()) + "'";
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -34,7 +34,7 @@ std::string in_short(const StudyResults& study) {
   std::array<std::size_t, verdict_words.size()> counts{};
   for (const ResultEntry& result : study.results)
     ++counts[static_cast<std::size_t>(result.sight.verdict)];
-  // Cameras of several scenes may be one and the same.
+  // Several scenes may have the same camera.
   std::set<std::string_view> cameras;
   for (const CameraEntry& camera : study.cameras) cameras.insert(camera.name);
   const std::string scenes =
@@ -105,7 +105,7 @@ std::string body(const std::vector<ReportSection>& sections) {
 
 std::string scripts(const StudyResults& study) {
   const Json data = {{"format", 1}, {"timelines", timelines_json(study)}};
-  // The hash in the policy is of the script's bytes: nothing may stand beside them.
+  // The policy's hash is of the script's bytes: the element must contain nothing else.
   return fmt::format(
       "<script type=\"application/json\" id=\"data\">{}</script>\n<script>{}</script>\n",
       island(data), report_script());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// report.html: what a visibility study found, as one page that needs nothing beside it and no
-// network. Drawn from study.json alone (docs/visibility.md, "The report").
+// report.html: the results of a visibility study as one self-contained page without network access,
+// made from study.json only (docs/visibility.md, "The report").
 #pragma once
 
 #include <filesystem>
@@ -13,14 +13,14 @@ inline constexpr const char* report_file = "report.html";
 inline constexpr const char* study_file = "study.json";
 
 struct ReportOptions {
-  bool plain = false;  // without the script, also where the program has it
-  bool quiet = false;  // no note on standard error where the program was built without it
+  bool plain = false;  // without the script, even if the program contains it
+  bool quiet = false;  // no note on standard error if the program lacks the script
 };
 
-// Writes folder/report.html, aside and renamed, from the study's results; its pictures
-// are read from `folder` and put into the page. The whole content is HTML; the script, where the
-// program was built with it, adds plots, sliders, sorting and filters.
-// Throws base::Error (Input) where a picture is missing, (Work) where the file cannot be written.
+// Writes folder/report.html (a temporary file, renamed) from the study's results. Its pictures are
+// read from `folder` and embedded. All content is HTML; the script, if the program contains it,
+// adds plots, sliders, sorting and filters. Throws base::Error (Input) if a picture is missing,
+// (Work) if the file cannot be written.
 void write_report(const std::filesystem::path& folder, const StudyResults& study,
                   const ReportOptions& options = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures, read from the study's folder into the page.
+// Embeds pictures of the study's folder in the page.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view png_signature = "\x89PNG\r\n\x1A\n";
 constexpr std::uintmax_t largest_bytes = std::uintmax_t{64} << 20U;
 
-// A study's folder may come from someone else: its pictures are in it, and nothing else is read.
+// A study's folder may come from someone else: only pictures inside it are read.
 void check_inside(const std::string& file) {
   const fs::path path(file);
   const bool climbs = std::find(path.begin(), path.end(), fs::path("..")) != path.end();
@@ -43,14 +43,14 @@ std::string png_bytes(const fs::path& folder, const std::string& file) {
   return bytes;
 }
 
-// "EV 7.3, white at 190 cd/m²" of ISO 100, as --exposure has it.
+// "EV 7.3, white at 190 cd/m²" for ISO 100, as for --exposure.
 std::string exposure_text(const Number& white_cd_m2) {
   if (!white_cd_m2 || !(*white_cd_m2 > 0.0)) return "";
   return fmt::format("EV {:.1f}, white at {} cd/m²", std::log2(*white_cd_m2 / white_of_ev0),
                      figure(white_cd_m2));
 }
 
-// Each picture of the study is in the page once, and by one white for all where there is such.
+// Embeds each picture of the study once, with the common white if there is one.
 class Album {
  public:
   Album(const StudyResults& study, const fs::path& folder) : folder_(folder) {
@@ -64,7 +64,7 @@ class Album {
     }
   }
 
-  // Its number among the pictures.
+  // Index of a picture.
   [[nodiscard]] std::size_t of(const PictureEntry& picture) const {
     return places_.at(picture.file);
   }
@@ -112,7 +112,7 @@ class Album {
   std::map<std::string, std::size_t> places_;
 };
 
-// The script puts the two pictures under a slider.
+// The script shows the two pictures with a slider.
 std::string pairs_html(const StudyResults& study, const Album& album) {
   if (study.pairs.empty()) return "";
   std::string html = "<ul class=\"pairs\">\n";
@@ -126,10 +126,10 @@ std::string pairs_html(const StudyResults& study, const Album& album) {
   return html + "</ul>\n";
 }
 
-// Paper has those of studies that it can hold in a few pages.
+// More thumbnails than this are not printed.
 constexpr std::size_t most_printed = 100;
 
-// The summary's cells show them beside their reasons.
+// The cells of the summary show them with their reasons.
 std::string thumbnails_html(const StudyResults& study, const fs::path& folder) {
   if (study.thumbnails.empty()) return "";
   std::string html = fmt::format(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// earthshine report: draws report.html anew from a study's folder.
+// earthshine report: makes report.html again from a study's folder.
 #include <memory>
 #include <system_error>
 

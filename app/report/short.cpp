@@ -14,7 +14,7 @@ namespace {
 
 struct Tally {
   std::size_t camera = 0, seen = 0, all = 0;
-  std::map<std::string, std::size_t> hindrances;  // how often each comes first
+  std::map<std::string, std::size_t> hindrances;  // how often each is the first one
 };
 
 std::string hindrance_of(const ResultEntry& result) {
@@ -24,7 +24,7 @@ std::string hindrance_of(const ResultEntry& result) {
   return first.by.empty() ? cause : cause + " by " + first.by;
 }
 
-// The camera that sees it most often comes first.
+// Sorted by the number of detections, descending.
 std::vector<Tally> tallies_of(const StudyResults& study, const std::vector<std::size_t>& results) {
   std::vector<Tally> tallies;
   for (const std::size_t k : results) {

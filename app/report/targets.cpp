@@ -14,13 +14,13 @@ namespace earthshine::app {
 namespace {
 
 constexpr std::size_t most_rows = 600;
-// With no more targets each has a page of its own on paper.
+// Up to this number of targets, each is printed on its own page.
 constexpr std::size_t most_paged = 3;
 
 struct Entry {
   std::string key;
-  std::size_t worst;                // result
-  std::vector<std::size_t> places;  // in the block's conditions
+  std::size_t worst;                // index of the result
+  std::vector<std::size_t> places;  // indices in the block's conditions
 };
 
 std::string key_of(const ResultEntry& result) {
@@ -71,7 +71,7 @@ std::string row(const StudyResults& study, const Block& block, const Entry& entr
       why.empty() ? dash : why);
 }
 
-// Counts its rows in `shown`; beyond most_rows in `left_out`.
+// Counts its rows in `shown`; rows beyond most_rows in `left_out`.
 std::string ledger(const StudyResults& study, std::size_t target, std::size_t& shown,
                    std::size_t& left_out) {
   std::string rows;

@@ -19,7 +19,7 @@ constexpr std::string_view replacement = "\xEF\xBF\xBD";           // U+FFFD
 constexpr std::string_view first_strong_isolate = "\xE2\x81\xA8";  // U+2068
 constexpr std::string_view pop_isolate = "\xE2\x81\xA9";           // U+2069
 
-// Of a UTF-8 character of two or three bytes.
+// Code point of a UTF-8 character of two or three bytes.
 unsigned code_of(std::string_view character) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(character[k]); };
   if (character.size() == 2) return (byte(0) & 0x1FU) << 6U | (byte(1) & 0x3FU);
@@ -27,15 +27,15 @@ unsigned code_of(std::string_view character) {
   return (byte(0) & 0x0FU) << 12U | (byte(1) & 0x3FU) << 6U | (byte(2) & 0x3FU);
 }
 
-// What an isolate does not hold: the characters that end a paragraph (UAX #9, class B).
+// Characters that end a paragraph and thus an isolate (UAX #9, class B).
 bool ends_paragraph(unsigned code) { return (code >= 0x80 && code <= 0x9F) || code == 0x2029; }
 
 // U+2066 to U+2068 begin an isolate.
 bool begins_isolate(unsigned code) { return code >= 0x2066 && code <= 0x2068; }
 
 // Whether the text may be written from right to left: marks, embeddings, overrides and isolates;
-// letters from Hebrew to Arabic Extended-A and their presentation forms; all of four bytes, where
-// the old scripts of the Near East are.
+// letters from Hebrew to Arabic Extended-A and their presentation forms; all characters of four
+// bytes, among them the ancient scripts of the Near East.
 bool may_turn(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t length = std::max<std::size_t>(1, base::utf8_length(text.substr(at)));
@@ -56,7 +56,7 @@ std::string escaped(std::string_view text) {
   html.reserve(text.size() + text.size() / 8);
   const bool isolated = may_turn(text);
   if (isolated) html += first_strong_isolate;
-  std::size_t open = 0;  // isolates of the text's own
+  std::size_t open = 0;  // open isolates in the text itself
   for (std::size_t at = 0; at < text.size();) {
     const char c = text[at];
     const auto code = static_cast<unsigned char>(c);
@@ -153,7 +153,7 @@ std::string counted(std::size_t count, const std::string& one, const std::string
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
-// The conditions of a study, put into tables.
+// Groups a study's conditions into tables.
 std::vector<Block> blocks_of(const StudyResults& study) {
   std::vector<Block> blocks;
   for (std::size_t k = 0; k < study.conditions.size(); ++k) {
@@ -171,7 +171,7 @@ std::vector<Block> blocks_of(const StudyResults& study) {
   }
   for (Block& block : blocks) {
     if (block.lamps.empty()) continue;
-    block.lamps.erase(0, 1);  // the mark that it is an orbit's
+    block.lamps.erase(0, 1);  // the mark of an orbit
     std::stable_sort(block.conditions.begin(), block.conditions.end(),
                      [&](std::size_t a, std::size_t b) {
                        return *study.conditions[a].position_deg < *study.conditions[b].position_deg;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texts, figures and bytes as the report's HTML has them.
+// Text, numbers and bytes for the report's HTML.
 #pragma once
 
 #include <optional>
@@ -11,27 +11,26 @@
 
 namespace earthshine::app {
 
-// Any text as HTML that shows it and does nothing else, between tags and inside quotes. What is no
-// UTF-8, and control characters, become U+FFFD. Text that may be written from right to left, or
-// that turns the direction of writing, stands between U+2068 and U+2069 (UAX #9): what follows keeps
-// its own direction.
+// Escapes a text for HTML, between tags and inside quotes. Invalid UTF-8 and control characters
+// become U+FFFD. Text that may be written from right to left, or changes the direction, is enclosed
+// in U+2068 and U+2069 (UAX #9), so that the following text keeps its direction.
 [[nodiscard]] std::string escaped(std::string_view text);
 
-// JSON for a <script type="application/json">: nothing in it can end the element.
+// JSON for a <script type="application/json">: it cannot contain the end of the element.
 [[nodiscard]] std::string island(const Json& json);
 
 [[nodiscard]] std::string base64(std::string_view bytes);
 
-// What stands for a value that does not exist.
+// Shown for missing values.
 inline constexpr const char* dash = "–";
 
-// Three significant digits, or the dash. Chance: two decimals, and never 1 or 0 unless it is.
+// Three significant digits, or the dash. Chance: two decimals, 0 or 1 only if exact.
 [[nodiscard]] std::string figure(const Number& value, Form form = Form::Plain);
 
 // "sun 40 %, bay-lamps 60 %" or "earth 120, bay-lamps 3.1" (of `unit`), escaped.
 [[nodiscard]] std::string shares_text(const std::vector<GroupShare>& shares, Form form);
 
-// The columns of a condition's place: "40°", or its name where it has none.
+// The position of a condition: "40°", or its name if it has none.
 [[nodiscard]] std::string place_of(const ConditionEntry& condition);
 
 // "1 result", "2 results".

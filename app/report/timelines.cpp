@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Timelines over the orbit: in words here, as plots by the script.
+// Timelines over the orbit: text here, plots by the script.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace earthshine::app {
 namespace {
 
-// From here on the target counts as detected in a timeline's words.
+// Probability from which a target counts as detected in the text.
 constexpr double likely = 0.5;
 
 bool has_positions(const Timeline& line) {
@@ -30,7 +30,7 @@ std::string place(const Timeline& line, std::size_t k) {
   return fmt::format("place {}", k + 1);
 }
 
-// "20° to 160°, 200°": runs of places where `holds` does.
+// "20° to 160°, 200°": intervals in which `holds` is true.
 template <class Holds>
 std::string runs(const Timeline& line, Holds holds) {
   std::string text;
@@ -46,7 +46,7 @@ std::string runs(const Timeline& line, Holds holds) {
   return text;
 }
 
-// Of a target without a probability anywhere.
+// Text for a target without a probability at any position.
 std::string unseen_text(const Timeline& line) {
   const auto where = [&](studies::Verdict verdict) {
     return runs(line, [&](std::size_t k) { return line.verdict[k] == verdict; });
@@ -95,7 +95,7 @@ std::string in_words(const Timeline& line) {
   return text;
 }
 
-// Rounded to what a plot shows, which keeps the page small.
+// Rounded to the plot's resolution, to keep the page small.
 Json rounded(const std::vector<Number>& values) {
   Json list = Json::array();
   for (const Number& value : values) list.push_back(value ? with_four_digits(*value) : Json());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON of what has a list of its fields (describe, in results_fields.h), and back.
+// Converts structs with a list of fields (describe, in results_fields.h) to JSON and back.
 #pragma once
 
 #include <algorithm>
@@ -27,15 +27,15 @@ inline constexpr bool is_optional = false;
 template <class Value>
 inline constexpr bool is_optional<std::optional<Value>> = true;
 
-// A number with the digits that study.json has.
+// A number rounded as in study.json.
 [[nodiscard]] Json with_four_digits(double value);
 
 class JsonWriter {
  public:
-  // What members of structs become: objects within objects, or, in a row of a table, cells of one
-  // level ("signal.mean") that are there whatever exists, of numbers with four digits.
+  // Form of struct members: nested objects, or, in a table row, flat cells ("signal.mean") that are
+  // always present, with numbers of four digits.
   enum class Form { Nested, Row };
-  // study: that entries are named by; must outlive this.
+  // study: supplies the names of entries; must outlive this.
   explicit JsonWriter(const StudyResults& study, Form form = Form::Nested)
       : study_(study), form_(form) {}
 
@@ -66,7 +66,7 @@ class JsonWriter {
   void operator()(const char* key, const Value& value) {
     json_[key] = json_of(value);
   }
-  // A part of a struct, which may not exist.
+  // A part of a struct that may be missing.
   template <class Struct>
   void part(const char* key, const std::optional<Struct>& value) {
     if (form_ == Form::Nested) return (*this)(key, value);
@@ -140,14 +140,14 @@ class JsonWriter {
   Json json_ = Json::object();
 };
 
-// The rows of {"columns": [...], "rows": [[...], ...]} as objects: "signal.mean" is a member of
-// "signal", which is null where all of its cells are.
+// The rows of {"columns": [...], "rows": [[...], ...]} as objects: "signal.mean" becomes a member
+// of "signal", which is null if all of its cells are.
 [[nodiscard]] std::vector<Json> objects_of_rows(const JsonPart& table);
 
-// The entries of a study that were read so far, by name; cameras by that of their scene too.
+// Entries of a study that were read so far, by name; cameras also by scene.
 class EntryNames {
  public:
-  // study: that is being read; must outlive this.
+  // study: being read; must outlive this.
   explicit EntryNames(const StudyResults& study) : study_(study) {}
   void add(const JsonPart& part, Named what, const char* key, const std::string& name,
            std::size_t scene);
@@ -163,10 +163,10 @@ class EntryNames {
   std::map<Named, std::size_t> counts_;
 };
 
-// What is missing or null stays as it is by default.
+// Missing and null members keep their defaults.
 class JsonReader {
  public:
-  // All must outlive this.
+  // Both must outlive this.
   JsonReader(const JsonPart& part, EntryNames& names) : part_(part), names_(names) {}
 
   template <class Value>
@@ -184,7 +184,7 @@ class JsonReader {
     } else if constexpr (is_optional<Value>) {
       value.reset();
       if (part_.has(key)) (*this)(key, value.emplace());
-      // A number that is not finite does not exist.
+      // Non-finite numbers count as missing.
       if constexpr (std::is_same_v<Value, Number>) value = part_.number(key);
     } else if constexpr (std::is_same_v<Value, std::vector<std::string>>) {
       value = part_.texts(key);
@@ -271,7 +271,7 @@ class JsonReader {
   }
   void factors(const char* key, std::vector<Factor>& factors);
 
-  // A part itself.
+  // Reads a part itself.
   template <class Value>
   void read(const JsonPart& part, Value& value) const {
     if constexpr (is_list<Value>) {
@@ -287,7 +287,7 @@ class JsonReader {
   EntryNames& names_;
 };
 
-// Of what names no entries of a study: kept results.
+// For structs that reference no entries of a study: stored results.
 template <class Value>
 [[nodiscard]] Json kept_json(const Value& value) {
   const StudyResults none;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int panel_width_px = 640, panel_height_px = 420;
 
-// How many bytes the character at `at` has; 0 where it is no UTF-8.
+// Number of bytes of the character at `at`; 0 for invalid UTF-8.
 std::size_t character_bytes(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
   const unsigned first = byte(at);
@@ -41,8 +41,8 @@ std::string data_block(const std::string& name, const std::vector<PlotPoint>& po
   return text + "EOD\n";
 }
 
-// Numbers beside a logarithmic axis: gnuplot itself has them at powers of ten alone, of which a
-// short axis may show none.
+// Tick labels of a logarithmic axis: gnuplot places them at powers of ten only, and a short axis
+// may contain none.
 std::string tics(double low, double high) {
   const std::vector<std::vector<double>> steps = {
       {1}, {1, 3}, {1, 2, 5}, {1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9}};
@@ -92,7 +92,7 @@ std::string panel_script(const PlotPanel& panel, std::size_t index) {
            "unset logscale\nset label 1 'no points' at graph 0.5, 0.5 center\n"
            "plot [0:1] [0:1] NaN notitle\nunset label 1\nset logscale xy\n";
   }
-  // Room around the points, also where all are alike.
+  // Margin around the points, even if all are equal.
   return text + data +
          fmt::format("set xrange [{:.6g}:{:.6g}]\nset xtics {}\n", low_x / 1.3, high_x * 1.3,
                      tics(low_x / 1.3, high_x * 1.3)) +
@@ -100,7 +100,7 @@ std::string panel_script(const PlotPanel& panel, std::size_t index) {
                      high_y * 1.3, tics(low_y / 1.3, high_y * 1.3), plots);
 }
 
-// What the process wrote, its first line.
+// The first line of the process's output.
 std::string first_line(int descriptor) {
   std::string text;
   std::array<char, 512> buffer{};
@@ -114,7 +114,7 @@ std::string first_line(int descriptor) {
   return text.substr(0, text.find('\n'));
 }
 
-// In the child: nothing but calls that are safe after fork.
+// In the child: only async-signal-safe calls after fork.
 [[noreturn]] void become_gnuplot(const char* folder, int errors, const char* const* arguments) {
   constexpr int no_folder = 126, not_found = 127;
   const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
@@ -167,7 +167,7 @@ std::string plot_script(const std::string& picture, const std::vector<PlotPanel>
 std::string draw_plots(const std::filesystem::path& folder,
                        const std::vector<std::string>& scripts) {
   constexpr int not_found = 127;
-  std::vector<const char*> arguments = {"gnuplot", "-d"};  // -d: no settings of the user's
+  std::vector<const char*> arguments = {"gnuplot", "-d"};  // -d: ignores the user's settings
   for (const std::string& script : scripts) arguments.push_back(script.c_str());
   arguments.push_back(nullptr);
   const std::string place = folder.string();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plots are gnuplot's: a script with its data inside, drawn by a process of its own. The only user
-// of gnuplot.
+// Plots by gnuplot: a script with its data, run in a separate process. The only user of gnuplot.
 #pragma once
 
 #include <filesystem>
@@ -10,21 +9,21 @@
 
 namespace earthshine::app {
 
-// The package that has it, for messages.
+// Name of its package, for messages.
 inline constexpr const char* plot_package = "gnuplot-nox";
 
-// Any text as a gnuplot string that stands for itself: in single quotes, within which gnuplot
-// neither looks for escapes nor runs commands, without control characters or broken UTF-8.
+// Any text as a literal gnuplot string: in single quotes, inside which gnuplot processes neither
+// escapes nor commands, without control characters or invalid UTF-8.
 [[nodiscard]] std::string plot_text(std::string_view text);
 
-// A point of a plot; no error bar where low = high.
+// A point of a plot; no error bar if low = high.
 struct PlotPoint {
   double x = 0.0, y = 0.0, low = 0.0, high = 0.0;
 };
 struct PlotCurve {
   std::string title;
-  std::string style;              // gnuplot's words: "with lines lw 2 lc rgb '#888888'"
-  std::vector<PlotPoint> points;  // of logarithmic axes: all positive
+  std::string style;              // gnuplot syntax: "with lines lw 2 lc rgb '#888888'"
+  std::vector<PlotPoint> points;  // positive, for logarithmic axes
   bool bars = false;              // error bars below the points
 };
 struct PlotPanel {
@@ -33,13 +32,13 @@ struct PlotPanel {
   bool legend = true;
 };
 
-// A script that writes the SVG file `picture` (a plain file name) beside itself: panels side by
-// side, `across` in a row, both axes logarithmic. Panels without a point say so.
+// A script that writes the SVG file `picture` (a plain file name) beside itself: `across` panels
+// per row, both axes logarithmic. Panels without points are labelled.
 [[nodiscard]] std::string plot_script(const std::string& picture,
                                       const std::vector<PlotPanel>& panels, int across);
 
-// Runs gnuplot in `folder` on its files `scripts`. Gives "" or why nothing was drawn, in a
-// sentence; nothing is thrown, as the figures are there without the plots.
+// Runs gnuplot in `folder` on its files `scripts`. Returns "" or the reason of a failure, as a
+// sentence; does not throw, because the results do not need the plots.
 [[nodiscard]] std::string draw_plots(const std::filesystem::path& folder,
                                      const std::vector<std::string>& scripts);
 

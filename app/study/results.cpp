@@ -28,7 +28,7 @@ struct CsvColumn {
   const char* name;
   Json (*of)(const TargetFindings&);
 };
-// Behind those of the condition, the camera and the target.
+// Columns after those of the condition, the camera and the target.
 constexpr CsvColumn csv_columns[] = {
     {"verdict",
      [](const TargetFindings& f) { return Json(std::string(word_of(f.sight.verdict))); }},
@@ -68,10 +68,10 @@ constexpr CsvColumn csv_columns[] = {
      [](const TargetFindings& f) { return Json(studies::word_of(f.noise.finished_by)); }},
 };
 
-// A line of the text.
+// A line of the text output.
 struct Line {
-  std::string scene, camera, target, lamps, why;  // why: at worst, with its condition and figure
-  std::vector<std::pair<studies::Verdict, int>> verdicts;  // how often, in the results' order
+  std::string scene, camera, target, lamps, why;           // why: in the worst case
+  std::vector<std::pair<studies::Verdict, int>> verdicts;  // counts, in the results' order
   double best = -1.0, worst = 2.0;
   int count = 0;
 };
@@ -169,7 +169,7 @@ const std::string& name_of(const StudyResults& study, Named what, std::size_t nu
 
 namespace {
 
-// What each entry for itself cannot know to be wrong.
+// Checks that involve several entries.
 void check_together(const JsonPart& top, const StudyResults& study) {
   std::set<std::tuple<std::size_t, std::size_t, std::size_t>> seen;
   for (std::size_t k = 0; k < study.results.size(); ++k) {
@@ -180,7 +180,7 @@ void check_together(const JsonPart& top, const StudyResults& study) {
   }
 }
 
-// Reasons that were found in another condition.
+// Copies reasons that were found in another condition.
 void take_reasons_over(StudyResults& study) {
   std::map<std::tuple<std::string, std::size_t, std::size_t>, std::size_t> own;
   for (std::size_t k = 0; k < study.results.size(); ++k) {
@@ -201,7 +201,7 @@ void take_reasons_over(StudyResults& study) {
 Json with_four_digits(double value) {
   if (!std::isfinite(value)) return nullptr;
   const double rounded = std::strtod(fmt::format("{:.4g}", value).c_str(), nullptr);
-  // Without the ".0" of a floating-point number.
+  // Integers without the ".0" of floating-point numbers.
   if (rounded == std::floor(rounded) && std::abs(rounded) < 1e15) {
     return static_cast<std::int64_t>(rounded);
   }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a visibility study found, as values. study.json is written and read by the list of their
-// fields (results_fields.h); report, tables and texts are drawn from them. Luminances in cd/m^2,
-// angles in degrees, times in s, shares and probabilities from 0 to 1; what does not exist is
-// empty.
+// Results of a visibility study, as values. The lists of fields in results_fields.h write and read
+// study.json; report, tables and texts use the values. Luminances in cd/m^2, angles in degrees,
+// times in s, shares and probabilities from 0 to 1; missing values are empty.
 #pragma once
 
 #include <cstdint>
@@ -17,25 +16,25 @@
 
 namespace earthshine::app {
 
-using Number = std::optional<double>;  // nullopt: does not exist
+using Number = std::optional<double>;  // nullopt: missing
 
-// Entries that others name; they stand in lists of StudyResults, and a place in one is its number.
+// Entries that others reference: by their index in a list of StudyResults.
 enum class Named { Scene, Camera, Target, Condition };
 
-// Where the bay's axis, z of the scene, points: components of a unit vector along the zenith, the
+// Direction of the bay's axis, z of the scene: components of a unit vector along the zenith, the
 // direction of flight and the orbit's normal.
 struct BayAxis {
   double position_deg = 0.0;
   double zenith = 0.0, forward = 0.0, normal = 0.0;
 };
-// A scene's [orbit]; positions from orbit noon along the motion.
+// A scene's [orbit]; positions from orbit noon in the direction of motion.
 struct OrbitEntry {
   Number altitude_km, beta_deg, period_s;
-  Number position_deg;  // of the scene itself
+  Number position_deg;  // of the scene
   std::string attitude, inertial_as;
   Number inertial_at_deg;
   std::vector<studies::Arc> umbra_deg, penumbra_deg;  // one arc, or none
-  std::vector<BayAxis> bay;  // at 0, 90, 180 and 270 deg, where the attitude is known
+  std::vector<BayAxis> bay;  // at 0, 90, 180 and 270 deg, if the attitude is known
 };
 struct SceneEntry {
   std::string id, name, path;
@@ -47,7 +46,7 @@ struct CameraEntry {
   std::string name;
   std::optional<int> columns, rows;
   Number fov_deg;
-  std::string cctv, iris;  // "" without
+  std::string cctv, iris;  // "" if none
   Number relative_noise;
   std::string error_text;
   Number render_seconds;
@@ -62,38 +61,38 @@ struct ConditionEntry {
   std::string name, lamps;
   std::string utc;  // "" without a trajectory
   Number position_deg, time_s, sun_share;
-  std::string phase;  // "day", "penumbra" or "eclipse"; "" where the scene has no Sun
+  std::string phase;  // "day", "penumbra" or "eclipse"; "" if the scene has no Sun
   std::vector<Factor> factors;
   std::string others;
   Number earth_error;
 };
 
-// A light group's share or luminance, or what it stands for.
+// A light group's share or luminance, or its factor.
 struct GroupShare {
   std::string group;
   Number value;
 };
-// What one camera makes of one target in one condition.
+// Results of one camera and target in one condition.
 struct TargetFindings {
   studies::Sight sight;
   Number lit_fraction;
   std::vector<GroupShare> lit_by, light_by;
   std::vector<studies::LightShare> light_from;
   Number luminance_error, luminance_bound;
-  studies::ConditionNoise noise;  // of the condition's picture by that camera
+  studies::ConditionNoise noise;  // of the camera's picture in the condition
   std::string why;
   std::vector<studies::Reason> reasons;
-  std::string why_of;  // the condition whose reasons these are; "": this one
+  std::string why_of;  // the condition in which the reasons were found; "": this one
 };
 struct ResultEntry : TargetFindings {
   std::size_t condition = 0, camera = 0, target = 0;
 };
 
-// What one camera makes of one target along the orbit, by one lamp setting: lists of one length.
+// Results of one camera and target along the orbit for one lamp setting: lists of equal length.
 struct Timeline {
   std::size_t scene = 0;
   std::string camera, target, lamps;
-  std::vector<std::string> utc = {};  // of a trajectory, else ""
+  std::vector<std::string> utc = {};  // with a trajectory, else ""
   std::vector<Number> position_deg = {}, time_s = {}, sun_share = {};
   std::vector<Number> detect = {}, recognise = {}, identify = {}, luminance = {}, weber = {};
   std::vector<std::optional<studies::Verdict>> verdict = {};
@@ -105,9 +104,9 @@ struct AnswerEntry {
   std::string text, camera, iris, lamps;
   Number least_factor;
   std::vector<studies::Arc> arcs_deg;
-  std::string scene;  // "" in a study of one
+  std::string scene;  // "" in a study of one scene
   Number best_probability;
-  Number darkest_deg;  // where least_factor holds
+  Number darkest_deg;  // position of least_factor
 };
 struct PictureEntry {
   std::string file, caption;
@@ -120,17 +119,17 @@ struct FigureEntry : PictureEntry {
   std::string name, exr;
   bool clean = false;
   Number white_cd_m2;  // luminance of white in a clean picture
-  // The same by one white for all of the study; "" where that is how `file` is.
+  // The picture with the common white of the study; "" if `file` has it.
   std::string same_file;
   Number same_white_cd_m2;
 };
-// Of a condition as a camera shows it, by its own white; monitor: "" without a CCTV.
+// A condition as a camera shows it, with its own white; monitor: "" without a CCTV.
 struct ThumbnailEntry {
   std::size_t condition = 0, camera = 0;
   std::string file, monitor;
   Number white_cd_m2;
 };
-// What was done or found in the folder, from an earlier run; seconds: of the run that did it.
+// Work that was done, or read from an earlier run; seconds: of the run that did it.
 struct StudyCost {
   std::string stage;
   Number seconds;
@@ -155,13 +154,13 @@ struct StudyResults {
   std::vector<std::string> notes;
 };
 
-// Of the cameras and targets that have results at two places or more.
+// For cameras and targets with results at two or more positions.
 [[nodiscard]] std::vector<Timeline> timelines_of(const StudyResults& study);
 
-// The name that others call an entry by.
+// The name by which others reference an entry.
 [[nodiscard]] const std::string& name_of(const StudyResults& study, Named what, std::size_t number);
 
-// Figures of what was found of a target, by member: columns of tables name them in their rows.
+// Values of a target's results, by member, for columns of tables.
 
 using Figure = Number (*)(const TargetFindings&);
 
@@ -196,23 +195,22 @@ Number eye_chance_of(const TargetFindings& found) {
   return eye && eye->probability ? Number((*eye->probability).*Member) : Number();
 }
 
-// study.json, written and read by the lists of fields in results_fields.h. Results come with four
-// digits, and reasons only where they were found.
+// study.json, written and read by the lists of fields in results_fields.h. Results are rounded to
+// four digits; reasons are written only where they were found.
 
 [[nodiscard]] Json to_json(const StudyResults& results);
-// Throws base::Error (Input) with the place in `file` where something is not as it should be.
+// Throws base::Error (Input) with the place in `file` of an error.
 [[nodiscard]] StudyResults read_results(const std::string& file, const Json& json);
 
 // The results of a visibility study as a table and as text.
 
-// A sentence for each camera and target of which a black back is seen: that is not the target as it
-// will look.
+// A sentence for each camera and target with a visible black back: the target will look different.
 [[nodiscard]] std::vector<std::string> black_back_notes(const StudyResults& results);
 
-// results.csv: a row per condition, camera and target.
+// results.csv: one row per condition, camera and target.
 [[nodiscard]] std::string results_csv(const StudyResults& results);
 
-// For people: a line per camera, target and lamp setting, the answers, the noise of each camera's
+// For people: one line per camera, target and lamp setting, the answers, the noise of each camera's
 // pictures, and black backs.
 [[nodiscard]] std::string study_text(const StudyResults& results);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fields of a study's results, one list for each struct, in the order of study.json
-// (docs/visibility.md has the keys). A new field is a member in results.h and its line here.
+// The fields of a study's results, one list per struct, in the order of study.json
+// (docs/visibility.md has the keys). A new field needs a member in results.h and a line here.
 #pragma once
 
 #include <concepts>
@@ -10,27 +10,27 @@
 
 namespace earthshine::app {
 
-// A value, to be written, or one that is read into.
+// A const value to write, or a value to read into.
 template <class Value, class Struct>
 concept Either = std::same_as<std::remove_const_t<Value>, Struct>;
 
-// describe(fields, value) tells `fields` each key in the file's order with its member:
-//   fields(key, member)              what does not exist is null
-//   fields.or_null(key, text)        "" is null
-//   fields.if_any(key, member)       what does not exist has no key
-//   fields.part(key, struct)         what does not exist is null; in a table columns "key.member"
+// describe(fields, value) calls `fields` for each key, in file order, with its member:
+//   fields(key, member)              missing: null
+//   fields.or_null(key, text)        "": null
+//   fields.if_any(key, member)       missing: no key
+//   fields.part(key, struct)         missing: null; in a table columns "key.member"
 //   fields.table(key, members)       a list whose keys are written once
 //   fields.word(key, enum, last)     its word_of; `last` is the last enumerator
-//   fields.one_of(key, text, words)  "" is null
-//   fields.list(key, members)        a list that must be there
+//   fields.one_of(key, text, words)  "": null
+//   fields.list(key, members)        a required list
 //   fields.entry(what, key, name)    the name of this entry among those of its kind ...
 //   fields.names(what, key, list)    ... or of all of them
 //   fields.at(what, key, number)     another entry's, by its name ...
 //   fields.camera(key, number, condition)  ... of the cameras of a condition's scene
 //   fields.shares(key, list)         an object: group to number
-//   fields.light(key, key, list)     two of these, by groups straight and by way of objects
+//   fields.light(key, key, list)     two such objects: by groups directly, and by objects
 //   fields.factors(key, list)        an object: group to number or colour
-// Cameras of several scenes may have one name: theirs comes with the scene.
+// Cameras of several scenes may share a name: references to them include the scene.
 template <class Fields>
 void describe(Fields& fields, Either<studies::Probability> auto& p) {
   fields("detect", p.detect);

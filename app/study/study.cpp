@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// earthshine study: questions answered about a scene, each into a folder of files.
+// earthshine study: studies of a scene, each with a folder of output files.
 #include "app/study/study.h"
 
 #include <fmt/format.h>

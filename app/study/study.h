@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the studies share: scene and folder, tables, the name of a file.
+// Common code of the studies: scene and folder, tables, file names.
 #pragma once
 
 #include <optional>
@@ -17,24 +17,24 @@ namespace earthshine::app {
 struct StudyCall {
   SceneInput scene;
   std::string folder;
-  std::vector<std::string> cameras;  // empty: the study's own choice
+  std::vector<std::string> cameras;  // empty: chosen by the study
   std::optional<Size> size;
   bool json = false;
   PartCall part;
 };
 // -o, --size, --json and what add_scene_options adds.
 void add_study_options(CLI::App& command, StudyCall& call);
-// --camera, which may be repeated.
+// --camera, repeatable.
 void add_cameras_option(CLI::App& command, StudyCall& call);
-// --camera of a study of one.
+// --camera for a study with one camera.
 void add_camera_option(CLI::App& command, StudyCall& call);
-// That one; a note says which where the call does not and there are several, unless `quiet`.
+// This camera; notes the choice if the call names none and there are several, unless `quiet`.
 [[nodiscard]] const scenes::Camera& camera_of(const StudyCall& call, const scenes::Scene& scene,
                                               bool quiet);
 // --wanted and --iris.
 void add_wanted_options(CLI::App& command, std::vector<std::string>& wanted,
                         std::vector<std::string>& iris);
-// The call as a study of one scene at its own place, with its lamps as they are.
+// The call as a study of one scene, at its own position with its own lamp settings.
 [[nodiscard]] studies::StudyFile study_of(const StudyCall& call,
                                           const std::vector<std::string>& wanted,
                                           const std::vector<std::string>& iris);
@@ -45,7 +45,7 @@ void add_wanted_options(CLI::App& command, std::vector<std::string>& wanted,
 [[nodiscard]] Command add_study_run(CLI::App& study);
 [[nodiscard]] Command add_study_visibility(CLI::App& study);
 
-// A progress line per stage of a study.
+// Shows a progress line per stage of a study.
 [[nodiscard]] raytrace::StageListener progress_of_stages(const Common& common);
 
 }  // namespace earthshine::app

@@ -19,7 +19,7 @@ std::string angle_text(double angle_deg) {
   return fmt::format("{:.0f}", rounded >= 360.0 ? 0.0 : rounded);
 }
 
-// Digits enough to tell the value from its threshold.
+// Enough digits to distinguish the value from its threshold.
 std::string beside(const char* what, double value, const char* threshold_is, double threshold) {
   int digits = 2;
   const auto text = [&digits](double x) { return fmt::format("{:.{}g}", x, digits); };
@@ -81,7 +81,7 @@ std::string deciding_figure(const TargetFindings& found) {
                                                              : options.cycles.identify;
   const bool small = cycles < needed, faint = weber < threshold,
              noisy = snr_d < options.even_chance_snr;
-  // Where the screen resolves a cycle its contrast is above the threshold in parts.
+  // If the screen resolves a cycle, its contrast exceeds the threshold in parts of the picture.
   const bool seen_in_parts = screen && cycles > 0.0;
   if ((faint || noisy) && !(small && seen_in_parts)) {
     if (noisy && !(faint && weber / threshold < snr_d / options.even_chance_snr)) {

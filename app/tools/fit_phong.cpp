@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// earthshine fit-phong: k_d, k_s and n from measured reflectance.
+// earthshine fit-phong: fits k_d, k_s and n to measured reflectance.
 #include <fmt/format.h>
 
 #include <memory>

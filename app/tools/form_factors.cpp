@@ -27,7 +27,7 @@
 namespace earthshine::app {
 namespace {
 
-// Up to here `auto` takes the exact method: its time grows with the square of their number.
+// Up to this number `auto` uses the exact method: its time grows with the square of the number.
 constexpr std::size_t most_facets_for_auto = 1000;
 
 using Method = FactorMethod;
@@ -39,7 +39,7 @@ struct FactorsCall {
   bool json = false, csv = false;
 };
 
-constexpr std::size_t widest_table = 10;  // objects; beyond it each row lists its largest entries
+constexpr std::size_t widest_table = 10;  // objects; larger tables list the largest entries only
 constexpr std::size_t largest_listed = 6;
 
 struct Found {
@@ -52,24 +52,24 @@ struct Found {
   double seconds = 0.0;
 };
 
-// Per face, so that all of them together take a fraction of a second.
+// Rays per face: all faces together take a fraction of a second.
 int split_rays(std::size_t faces) {
   constexpr std::size_t all_rays = std::size_t{1} << 21, most = 1U << 16, fewest = 256;
   return static_cast<int>(std::clamp(all_rays / std::max<std::size_t>(1, faces), fewest, most));
 }
 
-// Between objects the exact method needs no patches: whole facets are integrated over.
+// Between objects the exact method needs no patches: it integrates over whole facets.
 void find_exactly(const scenes::Scene& scene, const scenes::RayQuery& query,
                   const radiosity::Patches& facets, const Common& common, Found& found) {
   const radiosity::ExactFormFactors exact = radiosity::exact_form_factors(
       scene, query, facets, {.split_rays = split_rays(facets.count()), .seed = common.seed});
   found.between = radiosity::object_form_factors(scene, facets, exact.factors);
   found.exact = exact.report;
-  // The area rules of pairs in plain sight are good to this share of F.
+  // Relative error of the area rules for unoccluded pairs.
   constexpr double area_rule_error = 2e-5;
   radiosity::ObjectFormFactors& o = found.between;
-  // Sky and black backs share what is left of a row, as rays found them; what is open of a face is
-  // found by points.
+  // Rays divide the rest of a row between sky and black backs; points estimate the open part of a
+  // face.
   std::vector<double> split(o.F.size(), 0.0), open(o.F.size(), 0.0), apart(o.F.size(), 0.0);
   for (std::uint32_t i = 0; i < facets.count(); ++i) {
     const double shared = facets.area_m2[i] * exact.report.split_std_error[i];
@@ -167,7 +167,7 @@ Json json_of(const Found& found) {
   return json;
 }
 
-// A pair a line, the way tables of view factors are exchanged.
+// One pair per line, the usual exchange format of view factors.
 std::string csv_of(const Found& found) {
   const radiosity::ObjectFormFactors& o = found.between;
   std::string text = "from,to,from_area_m2,F,std_error,from_open_area_m2\n";
@@ -219,7 +219,7 @@ std::string largest_entries(const Found& found) {
   return text;
 }
 
-// Of which objects bodies cover a part, which then takes none.
+// Objects that bodies partly cover; the covered part is excluded.
 std::string covered(const Found& found) {
   std::string text;
   for (std::size_t i = 0; i < found.names.size(); ++i) {

@@ -9,10 +9,10 @@
 namespace earthshine::app {
 
 enum class FactorMethod { Auto, Rays, Exact };
-// "auto", "rays" or "exact". Throws base::Error (Input), naming the option, for another word.
+// "auto", "rays" or "exact". Throws base::Error (Input), naming the option, for other words.
 [[nodiscard]] FactorMethod factor_method(const std::string& option, const std::string& word);
 
-// The report of `form-factors --json`. raw: rays as cast, before closure and reciprocity hold.
+// The report of `form-factors --json`. raw: rays as cast, before closure and reciprocity.
 [[nodiscard]] Json form_factors_json(LoadedScene& loaded, FactorMethod method, bool raw,
                                      const Common& common);
 

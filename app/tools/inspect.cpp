@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// earthshine inspect: what was read.
+// earthshine inspect: describes the scene as read.
 #include <fmt/format.h>
 
 #include <set>
@@ -27,7 +27,7 @@ struct InspectCall {
 
 Json objects_of(const scenes::Scene& scene) {
   Json objects = Json::array();
-  std::vector<std::set<std::uint32_t>> on_others(scene.objects.size());  // triangles
+  std::vector<std::set<std::uint32_t>> on_others(scene.objects.size());  // coincident triangles
   for (const scenes::FacePair& pair : scene.coincident) {
     for (const std::uint32_t t : {pair.a, pair.b}) {
       on_others[scene.triangles[t].object].insert(t);
@@ -68,7 +68,7 @@ Json objects_of(const scenes::Scene& scene) {
   return objects;
 }
 
-// Objects that run through one another, by pairs.
+// Intersecting objects, by pairs.
 Json crossings_of(const scenes::Scene& scene) {
   const scenes::Crossings found = scenes::find_crossings(scene);
   Json pairs = Json::array();
@@ -80,7 +80,7 @@ Json crossings_of(const scenes::Scene& scene) {
   return {{"pairs", pairs}, {"complete", found.complete}};
 }
 
-// What each texture is for, its file and size.
+// Use, file and size of each texture.
 Json textures_of(const scenes::MaterialMaps& maps) {
   Json textures = Json::array();
   const auto add = [&](const char* use, const scenes::TextureMap& map) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mission for `inspect`: enough to see a wrong frame or time system at once.
+// Describes a mission for `inspect`, so that a wrong frame or time system is obvious.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,14 +12,14 @@ namespace {
 
 using scenes::Instant;
 
-// Longer spans are cut: an eclipse comes with every orbit.
+// Longer intervals are truncated: every orbit has an eclipse.
 constexpr double longest_eclipse_span_s = 31 * 86400.0;
 
 Json moment_text(const std::optional<Instant>& t) {
   return t ? Json(scenes::utc_text(*t)) : Json();
 }
 
-// From the scene's moment to the last one of [time], or over one turn; as far as there are states.
+// From the scene's time to the last time of [time], or over one revolution, within the states.
 Json eclipses_of(const scenes::Scene& scene, const scenes::Mission& mission) {
   const Instant start = mission.time.start;
   const Instant stop = mission.has_span

@@ -14,11 +14,11 @@ namespace earthshine::app {
 namespace {
 
 std::string numbers(const Json& three) {
-  const auto plain = [&](std::size_t k) { return three[k].get<double>() + 0.0; };  // no -0
+  const auto plain = [&](std::size_t k) { return three[k].get<double>() + 0.0; };  // avoids -0
   return fmt::format("{:g} {:g} {:g}", plain(0), plain(1), plain(2));
 }
 
-// Of a unit vector.
+// Text of a unit vector.
 std::string direction(const Json& three) {
   const auto rounded = [&](std::size_t k) {
     return std::round(1e4 * three[k].get<double>()) / 1e4;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// earthshine manual and completion: the man page and the shells' completions, from the same table of
-// options as --help.
+// earthshine manual and completion: the man page and the shells' completions, from the table of
+// options of --help.
 #include <fmt/format.h>
 
 #include <functional>
@@ -21,7 +21,7 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
   return text;
 }
 
-// The commands that do something, each after the one that leads to it.
+// Visits the commands with an action, each after its parent.
 void for_each_command(const CLI::App& parser,
                       const std::function<void(const CLI::App& command)>& visit) {
   for (const CLI::App* command : parser.get_subcommands({})) {
@@ -45,7 +45,7 @@ std::vector<std::string> names_of(const CLI::Option& option) {
   return names;
 }
 
-// roff: a line that begins with . or ' would be a request.
+// Escapes text for roff, where a line that begins with . or ' is a request.
 std::string roff(const std::string& text) {
   std::string safe = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
   if (safe.starts_with('.') || safe.starts_with('\'')) safe = "\\&" + safe;
@@ -82,7 +82,7 @@ std::string manual(const CLI::App& program) {
          "/usr/share/doc/earthshine\n";
 }
 
-// "render" -> "__render": the name of a case.
+// Name of a case: "render" gives "__render".
 std::string joined(const CLI::App& command) {
   std::string words = words_to(command);
   if (!words.empty()) words.pop_back();

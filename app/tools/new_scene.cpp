@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// earthshine new: a scene file to begin with, with the parts, bounds and materials of meshes.
+// earthshine new: writes an initial scene file with the parts, bounds and materials of meshes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ struct NewCall {
   std::vector<std::string> meshes;
 };
 
-constexpr std::size_t most_parts = 64;  // of a mesh that become objects of their own
+constexpr std::size_t most_parts = 64;  // of a mesh, that become separate objects
 constexpr const char* plain_material = "grey";
 
 std::string toml_text(const std::string& text) { return Json(text).dump(); }
@@ -37,15 +37,15 @@ std::string toml_text(const std::string& text) { return Json(text).dump(); }
 std::string numbers(const Vec3& v) { return fmt::format("{:.4g} {:.4g} {:.4g}", v.x, v.y, v.z); }
 
 struct MeshPart {
-  std::string name;  // "": all of the mesh
+  std::string name;  // "": the whole mesh
   std::size_t polygons = 0;
   scenes::Box bounds;
   std::set<std::string> materials;
-  bool lacks_material = false;  // somewhere
+  bool lacks_material = false;  // in some polygon
 };
 
-// The parts that have each polygon once: of each polygon the smallest part that it belongs to. All
-// of the mesh where such parts overlap, or are too many.
+// The smallest parts that contain each polygon. The whole mesh if such parts overlap or are too
+// many.
 std::vector<std::uint32_t> finest_parts(const scenes::Mesh& mesh) {
   std::vector<std::size_t> sizes(mesh.part_names.size(), 0);
   for (const scenes::MeshPolygon& polygon : mesh.polygons) {
@@ -66,7 +66,7 @@ std::vector<std::uint32_t> finest_parts(const scenes::Mesh& mesh) {
   return {parts.begin(), parts.end()};
 }
 
-// part: scenes::no_index for all of the mesh.
+// part: scenes::no_index for the whole mesh.
 MeshPart describe_part(const scenes::Mesh& mesh, std::uint32_t part, bool turn_up) {
   MeshPart found;
   std::vector<Vec3> corners;
@@ -101,7 +101,7 @@ class SceneText {
     const std::string named =
         path.is_absolute() ? path.string() : fs::relative(path, beside).generic_string();
     scenes::Mesh mesh = scenes::read_mesh(path, beside, base::Location{path.string()});
-    // Of a file with +Y up, which scenes have sideways.
+    // For a file with +Y up, which would lie on its side in a scene.
     const bool turn_up = mesh.is_y_up && !mesh.is_own;
     std::vector<std::uint32_t> parts = finest_parts(mesh);
     if (parts.size() < 2) parts = {scenes::no_index};
@@ -160,7 +160,7 @@ class SceneText {
     bounds_.add(part.bounds);
   }
 
-  // Materials that the files define stand there as comments, to be taken over and changed.
+  // Materials of the files become comments, as templates.
   [[nodiscard]] std::string material_text() const {
     std::string text =
         "# Shares of the light: diffuse + 2 specular / (shininess + 2) + mirror + transmit is at "
@@ -196,7 +196,7 @@ class SceneText {
            "# aim = [0, 0, 0]\n# beam_deg = 60\n# field_deg = 120\n# intensity = 500  # cd\n\n";
   }
 
-  // From the Sun's side, so far away that the sphere around all objects is in the picture.
+  // From the Sun's side, at a distance that shows the sphere around all objects.
   [[nodiscard]] std::string camera_text() const {
     constexpr double fov_deg = 40.0, room = 1.05;
     const Vec3 middle = bounds_.middle();
@@ -232,7 +232,7 @@ void run(const NewCall& call, const Common& common) {
   for (const fs::path& mesh : meshes) scene.add_mesh(mesh);
   if (meshes.empty()) scene.add_shapes();
   const std::string text = scene.text();
-  // What is wrong with the meshes shows now.
+  // Reports errors of the meshes now.
   const LoadedScene loaded = check_scene(scenes::read_scene_text(text, call.scene));
   base::write_text(call.scene, text);
   if (common.quiet) return;

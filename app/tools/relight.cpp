@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// earthshine relight: other lamp settings of a picture that has a layer per light group.
+// earthshine relight: changes lamp settings in a picture with a layer per light group.
 #include "app/tools/relight.h"
 
 #include <fmt/format.h>
@@ -77,7 +77,7 @@ std::vector<std::string> object_names(const base::ExrHeader& header) {
       try {
         return names.get<std::vector<std::string>>();
       } catch (const Json::exception&) {
-        break;  // another program's
+        break;  // of another program
       }
     }
   }
@@ -110,7 +110,7 @@ void relight(base::ExrFile& file, const std::vector<std::string>& settings,
              const std::string& source) {
   const std::map<std::string, Rgb> factors = factors_of(settings);
   studies::relight(file.image, factors, source);
-  // What was said of the error held for the lights as they were.
+  // The stated error is valid for the original lights only.
   std::erase_if(file.header.numbers, [&](const auto& one) {
     return !factors.empty() && one.first.starts_with("earthshine:error.");
   });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Other lamp settings of a picture that has a layer per light group.
+// Changes lamp settings in a picture with a layer per light group.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace earthshine::app {
 
-// settings: GROUP=FACTOR or GROUP=R,G,B. The header loses its stated error and says the settings.
-// source: what errors name. Throws base::Error (Input) as studies::relight, and for a setting that
-// is none.
+// settings: GROUP=FACTOR or GROUP=R,G,B. Removes the stated error from the header and adds the
+// settings. source: named in errors. Throws base::Error (Input) as studies::relight, and for an
+// invalid setting.
 void relight(base::ExrFile& file, const std::vector<std::string>& settings,
              const std::string& source);
 

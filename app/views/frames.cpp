@@ -36,7 +36,7 @@ Json regions_key(Json picture_key) {
 
 }  // namespace
 
-// As it is kept beside the picture.
+// Stored form beside the picture.
 template <class Fields>
 void describe(Fields& fields, Either<raytrace::LayerErrors> auto& errors) {
   fields("luminance", errors.luminance);
@@ -55,18 +55,18 @@ void describe(Fields& fields, Either<StudyFrames::Frame> auto& frame) {
 
 namespace {
 
-// A condition's picture has a larger relative error than that of all lights together, of which it
-// shows a few: 1.1 to 1.25 times on the payload bay but for grazing Suns.
+// A condition's picture shows only some of the lights, and its relative error is larger than the
+// error of all lights together: 1.1 to 1.25 times on the payload bay, except for a grazing Sun.
 constexpr double share_of_the_sum = 0.8;
-// Layers times pixels that a picture may have with a gather point for each of its pixels; beyond,
-// one serves four, and memory and time are a third.
+// Limit of layers times pixels for one gather point per pixel; larger pictures have one per four
+// pixels, at a third of the memory and time.
 constexpr std::size_t most_values = std::size_t{1} << 23U;
 
-// Suns that the patches are cut for; the shadows of those between fall between theirs.
+// Suns used to refine the patches; shadows of intermediate Suns fall between theirs.
 constexpr std::size_t most_refined_suns = 4;
 
-// The same lights in few groups: patches are cut where the light of any of them varies, and noise
-// in many would be taken for variation.
+// Combines the lights in few groups: refinement divides patches where any group varies, and the
+// noise of many groups would count as variation.
 scenes::Scene scene_to_cut(const scenes::Scene& basis) {
   scenes::Scene scene = basis;
   if (!basis.sky_parts) return scene;
@@ -82,7 +82,7 @@ scenes::Scene scene_to_cut(const scenes::Scene& basis) {
 
 namespace {
 
-// Target, surround, target, surround ...
+// Alternates targets and surrounds.
 std::vector<std::vector<std::uint32_t>> regions_of(
     const std::vector<studies::TargetView>& targets) {
   std::vector<std::vector<std::uint32_t>> regions;
@@ -303,7 +303,7 @@ std::optional<StudyFrames::Frame> StudyFrames::find(const Json& cache_key,
 }
 
 void StudyFrames::keep(const Json& cache_key, base::Image image, Frame& frame) const {
-  // Of the few layers without an orbit no digit is spared.
+  // Without an orbit there are few layers, stored with all digits.
   const int digits = part_.basis->in_parts() ? round_layers(image, frame.relative_noise) : 0;
   CachedResult picture = packed_layers(std::move(image), digits, kept_json(frame));
   CachedResult noise = packed_noise(frame.errors);

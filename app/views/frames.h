@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The costly work of a visibility study, done once per scene and camera and kept in the study's
-// folder: the radiosity solution of all light groups, and a picture with a layer for each.
+// The expensive work of a visibility study, done once per scene and camera and stored in the
+// study's folder: the radiosity solution of all light groups, and a picture with a layer for each
+// group.
 #pragma once
 
 #include "app/parts/part.h"
@@ -15,9 +16,9 @@
 
 namespace earthshine::app {
 
-// Of a study's solution. Its pictures add what the solution lacks and are noisier than per cents,
-// so that a solver_tolerance of 1e-4 is enough where the scene has none of its own: of some 100
-// light groups at once each product of the solver takes its time.
+// Solver settings of a study. Pictures add the residual, with noise above a per cent, so that a
+// solver_tolerance of 1e-4 is sufficient unless the scene sets one: with some 100 light groups each
+// product of the solver is expensive.
 [[nodiscard]] radiosity::SolveOptions study_solver(const scenes::Scene& scene,
                                                    const Common& common);
 
@@ -25,62 +26,62 @@ namespace earthshine::app {
 
 class StudyFrames {
  public:
-  // how: in parts, all of them read one solution.
+  // how: parts share one solution.
   StudyFrames(const StudyPart& part, const std::filesystem::path& folder, const Common& common,
               const PartCall& how);
 
-  // That conditions' pictures are to have.
+  // Wanted error of the conditions' pictures.
   [[nodiscard]] static double wanted_error(const scenes::Scene& scene);
 
-  // The picture of a camera, with the layer "object"; nothing if it was interrupted.
+  // A camera's picture with the layer "object"; no value if interrupted.
   struct Frame {
     base::Image image;
     double seconds = 0.0;
     double relative_noise = 0.0;
     std::uint64_t rays = 0;
-    std::vector<std::string> limits = {};  // that the solution it was drawn from reached
-    std::size_t patches = 0;               // of that solution
-    raytrace::LayerErrors errors = {};     // complete where the image is
+    std::vector<std::string> limits = {};  // limitations of its solution
+    std::size_t patches = 0;               // number in its solution
+    raytrace::LayerErrors errors = {};     // complete if the image is
     raytrace::RegionNoise regions = {};    // of each target and its surround
-    // Of the weighted sum that a condition is.
+    // Noise of the weighted sum of a condition.
     [[nodiscard]] studies::ConditionNoise noise_of(const studies::GroupWeights& weights) const;
-    // Standard error of each target's difference from its surround in that sum, cd/m^2.
+    // Standard error of each target's difference from its surround in this sum, cd/m^2.
     [[nodiscard]] std::vector<double> deviations(const studies::GroupWeights& weights) const;
   };
   [[nodiscard]] std::optional<Frame> frame(const StudyCamera& camera,
                                            std::vector<StudyCost>& costs);
 
-  // Everything that a camera's picture depends on.
+  // All input of a camera's picture.
   [[nodiscard]] Json cache_key(const StudyCamera& camera) const;
-  // What is known of a picture that is there, without reading it.
+  // Data of a stored picture, without reading it.
   [[nodiscard]] std::optional<Frame> known(const StudyCamera& camera,
                                            std::vector<StudyCost>& costs) const;
-  // Whether a picture is there, whole.
+  // Whether a complete picture is stored.
   [[nodiscard]] bool has(const StudyCamera& camera) const;
-  // Of all that is kept of the study.
+  // All stored results of the study.
   [[nodiscard]] const ResultCache& store() const { return store_; }
 
   // Digests of the scene, the solver's settings and the program.
   [[nodiscard]] const Json& scene_key() const { return scene_cache_key_; }
 
-  // Of all light groups; solved or read when it is first asked for.
+  // Solution of all light groups; solved or read at the first request.
   [[nodiscard]] const radiosity::Solution& solution(std::vector<StudyCost>& costs);
-  // Where no more of its cameras come: its memory is free for those of other scenes.
+  // Call when no more cameras of the scene follow: frees memory for other scenes.
   void forget_solution() { solution_.reset(); }
 
  private:
   [[nodiscard]] StudyCost cost_of(const StudyCamera& camera, const Frame& frame, bool found) const;
-  // The frame that is kept; nothing where there is none, whole.
+  // The stored frame; no value unless complete.
   [[nodiscard]] std::optional<Frame> find(const Json& cache_key, std::string& said) const;
-  // Keeps it and takes it as it will be read.
+  // Stores the frame and returns it as it will be read.
   void keep(const Json& cache_key, base::Image image, Frame& frame) const;
   [[nodiscard]] raytrace::RenderOptions options(const StudyCamera& camera) const;
-  // Layers times pixels of its picture.
+  // Layers times pixels of the camera's picture.
   [[nodiscard]] std::size_t values_of(const StudyCamera& camera) const;
   [[nodiscard]] std::vector<std::vector<std::uint32_t>> regions_at(const StudyCamera& camera) const;
 
   [[nodiscard]] radiosity::Solution solve(StageTimes& times) const;
-  // The file's, or a new one in place of one that cannot be read.
+  // Reads the file's solution, or solves if it cannot be read.
   [[nodiscard]] radiosity::Solution read_or_solve(const std::filesystem::path& file,
                                                   const radiosity::SolutionOrigin& origin,
                                                   StudyCost& cost, StageTimes& times) const;

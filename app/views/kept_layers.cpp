@@ -10,22 +10,22 @@
 namespace earthshine::app {
 namespace {
 
-constexpr int half_digits = 10;          // of a half's mantissa, after the point
+constexpr int half_digits = 10;          // binary digits of a half's mantissa after the point
 constexpr int half_top = 15;             // the largest half is below 2^16
-constexpr int half_bottom = -14;         // exponent of the smallest half with all its digits
-constexpr const char* exact = "object";  // numbers, not light
+constexpr int half_bottom = -14;         // exponent of the smallest normal half
+constexpr const char* exact = "object";  // channel of integers, not light
 constexpr const char *cover_layer = "cover", *stands_for_layer = "stands for";
 
-// 2^exponent bounds the channel's values; 0 for a black one.
+// 2^exponent bounds the channel's values; 0 for a black channel.
 int exponent_of(const base::Channel& channel) {
   float most = 0.0F;
   for (const float value : channel.values) most = std::max(most, std::abs(value));
   return most > 0.0F ? std::ilogb(most) + 1 : 0;
 }
 
-// To multiples of 2^step: x + c - c, c = 3 2^(step + 22), whose last digit is 2^step.
+// Rounds to multiples of 2^step: x + c - c, c = 3 2^(step + 22), whose last digit is 2^step.
 void round_values(base::Channel& channel, int digits) {
-  // One more than now: the largest value may be rounded up to the power of two above it.
+  // Exponent plus one: rounding may increase the largest value to the next power of two.
   const int lowest = exponent_of(channel) + 1 - half_top + half_bottom;
   for (float& value : channel.values) {
     if (value == 0.0F) continue;
@@ -129,7 +129,7 @@ void take_noise(CachedResult kept, raytrace::LayerErrors& errors) {
   const auto edges = kept.facts.at("edges").get<std::vector<int>>();
   const base::Image picture = unpacked_layers(std::move(kept));
   const auto row = static_cast<std::size_t>(picture.width);
-  // By name: a file has its channels in the order of their names.
+  // By name: a file sorts its channels by name.
   const std::vector<float>& pixel = picture.find(exact)->values;
   std::vector<const std::vector<float>*> layers;
   while (const base::Channel* layer = picture.find(std::to_string(layers.size()))) {

@@ -21,7 +21,7 @@ namespace {
 using base::Blame;
 using base::Error;
 
-// The study's own CCTV cameras and monitor go before the scene's.
+// The study's own CCTV cameras and monitor have priority over the scene's.
 void add_cctv(const studies::StudyFile& study, scenes::Scene& scene) {
   for (const scenes::SettingTable& table : study.cctv.cctv) {
     std::erase_if(scene.cctv,
@@ -75,7 +75,7 @@ void check_wanted(const studies::StudyFile& study, const StudyPart& part) {
   }
 }
 
-// Those that the study names, or all.
+// The cameras that the study names, or all.
 std::vector<const scenes::Camera*> chosen_cameras(const studies::StudyFile& study,
                                                   const scenes::Scene& scene) {
   std::vector<const scenes::Camera*> chosen, named;
@@ -90,7 +90,7 @@ std::vector<const scenes::Camera*> chosen_cameras(const studies::StudyFile& stud
     if (std::find(chosen.begin(), chosen.end(), camera) == chosen.end()) chosen.push_back(camera);
   }
   if (study.cameras.empty()) {
-    (void)first_camera(scene);  // refuses a scene without any
+    (void)first_camera(scene);  // rejects a scene without cameras
     for (const scenes::Camera& camera : scene.cameras) chosen.push_back(&camera);
   }
   return chosen;
@@ -109,7 +109,7 @@ void find_cameras(const studies::StudyFile& study, const std::vector<const scene
   }
 }
 
-// Why a study cannot go the way that it asks for.
+// Error for a study whose route does not suit the scene.
 [[noreturn]] void refuse_way(const studies::StudyFile& study, const StudyPart& part,
                              const char* key, const std::string& found, const char* allowed,
                              const char* remedy) {
@@ -118,7 +118,7 @@ void find_cameras(const studies::StudyFile& study, const std::vector<const scene
               (in_file ? part.path + " " : "") + found, allowed, remedy);
 }
 
-// Sun and Earth at each moment.
+// Sun and Earth at each time.
 std::vector<studies::SkyPlace> find_moments(const studies::StudyFile& study,
                                             const scenes::Mission& mission, scenes::Scene& sky,
                                             StudyPart& part) {
@@ -133,7 +133,7 @@ std::vector<studies::SkyPlace> find_moments(const studies::StudyFile& study,
     places.push_back(studies::sky_of(sky));
     double position = sky.orbit->position_deg;
     if (k > 0) {
-      // Whole turns are those that the time is long enough for.
+      // The number of full revolutions follows from the time.
       const double expected =
           part.positions_deg.back() + 360.0 * span.step_s / scenes::period_at(mission, span.at(k));
       position = expected + std::remainder(position - expected, 360.0);
@@ -145,7 +145,7 @@ std::vector<studies::SkyPlace> find_moments(const studies::StudyFile& study,
   return places;
 }
 
-// Sun and Earth at each position, and when.
+// Sun and Earth at each position, with times.
 std::vector<studies::SkyPlace> find_places(const studies::StudyFile& study, StudyPart& part) {
   const scenes::Scene& scene = part.loaded.scene;
   if (study.positions_deg.empty() && !study.time) return {studies::sky_of(scene)};
@@ -180,7 +180,7 @@ std::vector<studies::SkyPlace> find_places(const studies::StudyFile& study, Stud
   return places;
 }
 
-// Of a scene that has light, where no condition of the study has any.
+// Warns if the scene has light but no condition of the study does.
 void name_darkness(StudyPart& part, bool quiet) {
   const studies::LightBasis& basis = *part.basis;
   for (std::size_t place = 0; place < basis.places().size(); ++place) {
@@ -192,7 +192,7 @@ void name_darkness(StudyPart& part, bool quiet) {
       }
     }
   }
-  if (scenes::find_light_groups(part.loaded.scene).count() == 0) return;  // named on loading
+  if (scenes::find_light_groups(part.loaded.scene).count() == 0) return;  // reported on loading
   std::string warning =
       "no condition of the study has any light: its lamp settings and positions leave all dark; "
       "look at [[lamps]] and [orbit] of the study";

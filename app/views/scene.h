@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One scene of a visibility study, with all that its conditions share.
+// One scene of a visibility study, with all data that its conditions share.
 #pragma once
 
 #include <memory>
@@ -15,8 +15,8 @@
 
 namespace earthshine::app {
 
-// "orbit 30 deg", or of a study along time the UTC at which the spacecraft is there: moments are
-// those of positions_deg, which rise, or empty.
+// "orbit 30 deg", or for a study along time the UTC of the spacecraft's position: `moments` are the
+// times of positions_deg, which are ascending, or empty.
 [[nodiscard]] std::string place_text(const std::vector<double>& positions_deg,
                                      const std::vector<scenes::Instant>& moments,
                                      double position_deg);
@@ -27,15 +27,15 @@ struct StudyCamera {
   std::optional<CctvSetup> cctv;
 };
 
-// Not to be moved once it is made: its parts point at each other.
+// Not movable: its members refer to each other.
 struct StudyPart {
   std::string id;    // "s0", "s1", ...
-  std::string path;  // as the study has it
+  std::string path;  // as in the study
   LoadedScene loaded;
-  std::vector<double> positions_deg;  // empty: the scene's own place
-  // Of each position, since orbit noon; along time since the first moment.
+  std::vector<double> positions_deg;  // empty: the scene's own position
+  // Time of each position since orbit noon; along time, since the first time.
   std::vector<double> times_s;
-  std::vector<scenes::Instant> moments;  // along time; else empty. positions_deg then go on growing
+  std::vector<scenes::Instant> moments;  // along time, positions_deg exceed 360; else empty
   std::unique_ptr<const studies::LightBasis> basis;
   LoadedScene basis_scene;  // of the basis, with its groups and effects
   std::unique_ptr<const scenes::RayQuery> query;
@@ -51,8 +51,8 @@ struct StudyPart {
   }
 };
 
-// Reads and checks everything that the study names in one of its scenes. Throws base::Error (Input)
-// before any light is computed.
+// Reads and checks everything in one scene that the study uses. Throws base::Error (Input) before
+// any light is computed.
 [[nodiscard]] std::unique_ptr<StudyPart> prepare_part(const studies::StudyFile& study,
                                                       std::size_t index, const Common& common);
 

@@ -16,7 +16,7 @@
 namespace earthshine::app {
 namespace {
 
-// The place where Sun and Earth give the target least in a setting.
+// The position where Sun and Earth give the target least light for a setting.
 std::size_t darkest_place(const studies::LightBasis& basis, std::size_t setting,
                           const std::vector<Rgb>& by_group) {
   const scenes::LightGroups& groups = basis.groups();
@@ -64,7 +64,7 @@ std::string way_text(const ViewingConfiguration& way) {
 struct Rated {
   const ViewingConfiguration* way = nullptr;
   std::vector<studies::Arc> arcs;
-  double reach = -1.0;  // share of the orbit, or whether the one place does
+  double reach = -1.0;  // share of the orbit, or 1 for a single position that suffices
   double best = 0.0;    // highest probability
 };
 
@@ -79,7 +79,7 @@ Rated rate(const ViewingConfiguration& way, double wanted, bool closed) {
   return rated;
 }
 
-// What the lamps of one way must give where Sun and Earth give least.
+// The lamp factor required where Sun and Earth give least.
 std::string lamps_of(const ViewingConfiguration& way, double wanted) {
   const std::string where =
       way.darkest_deg ? fmt::format("at {}, where it is darkest, ", at(way, *way.darkest_deg)) : "";
@@ -96,7 +96,7 @@ std::string lamps_of(const ViewingConfiguration& way, double wanted) {
                      scenes::two_digits(100.0 * factor));
 }
 
-// Of the answer's own way; another one's only where it needs less, named as well.
+// For the answer's own configuration; also another one if it needs less.
 std::string lamp_text(const std::vector<ViewingConfiguration>& ways,
                       const ViewingConfiguration& own, double wanted) {
   const ViewingConfiguration* least = nullptr;
@@ -115,7 +115,7 @@ std::string lamp_text(const std::vector<ViewingConfiguration>& ways,
   return text;
 }
 
-// The camera's CCTV with that iris mode; its own for an empty one.
+// The camera's CCTV with this iris mode; its own mode if empty.
 std::optional<degrade::Setup> cctv_with(const StudyCamera& camera, const std::string& mode) {
   if (!camera.cctv) return std::nullopt;
   degrade::Setup cctv = camera.cctv->chain;
@@ -142,7 +142,7 @@ void add_configurations(const StudyPart& part, const studies::StudyFile& study,
     const std::optional<degrade::Setup> cctv = cctv_with(camera, mode);
     const std::string iris = cctv ? std::string(degrade::word_of(cctv->camera.iris)) : "";
     for (std::size_t setting = 0; setting < basis.settings().size(); ++setting) {
-      std::vector<std::vector<double>> detect(places);  // by place and target
+      std::vector<std::vector<double>> detect(places);  // by position and target
       base::parallel_chunks(places, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t place = begin; place < end; ++place) {
           detect[place] = studies::detections(basis, view, place, setting, 1.0, cctv);

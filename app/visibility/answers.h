@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a study says to the probabilities that were wanted: which camera and iris, which lamps,
-// which parts of the orbit.
+// Answers a study's wanted probabilities: which camera and iris, which lamps, which parts of the
+// orbit.
 #pragma once
 
 #include <vector>
@@ -12,16 +12,16 @@
 
 namespace earthshine::app {
 
-// One way of looking: a camera with an iris mode, by one lamp setting.
+// A camera with an iris mode, for one lamp setting.
 struct ViewingConfiguration {
-  std::string scene;  // its path in a study of several, else empty
+  std::string scene;  // its path in a study of several scenes, else empty
   std::string camera, iris, lamps;
-  std::vector<double> detect;         // by place
-  std::vector<double> positions_deg;  // of them; empty: a single place
-  std::vector<double> tai_s;          // of them (scenes::Instant), along time; else empty
-  // At the place with least light of Sun and Earth: the least factor on the setting's lamps.
+  std::vector<double> detect;         // by position
+  std::vector<double> positions_deg;  // of these; empty: a single position
+  std::vector<double> tai_s;          // of these (scenes::Instant), along time; else empty
+  // Where Sun and Earth give least light: the smallest sufficient factor on the setting's lamps.
   std::optional<double> least_factor, darkest_deg;
-  bool tried_factors = false;  // false: the setting has no lamps on
+  bool tried_factors = false;  // false: all lamps of the setting are off
 };
 
 template <class Fields>
@@ -38,12 +38,12 @@ void describe(Fields& fields, Either<ViewingConfiguration> auto& way) {
   fields("tried_factors", way.tried_factors);
 }
 
-// Adds the viewing configurations of one camera to those of each wanted target.
+// Adds one camera's viewing configurations to the list of each wanted target.
 void add_configurations(const StudyPart& part, const studies::StudyFile& study,
                         const StudyCamera& camera, const studies::BasisView& view,
                         std::vector<std::vector<ViewingConfiguration>>& ways);
 
-// What a wanted target is answered.
+// The answer for a wanted target.
 [[nodiscard]] AnswerEntry answer_of(const studies::WantedTarget& wanted,
                                     const studies::StudyFile& study,
                                     const std::vector<ViewingConfiguration>& ways);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The work of a visibility study on one camera, found in points/ or done and kept there.
+// The work of a visibility study for one camera, read from points/ or done and stored there.
 #pragma once
 
 #include <functional>
@@ -17,29 +17,29 @@ namespace earthshine::app {
 
 class CameraWork {
  public:
-  using Configurations = std::vector<std::vector<ViewingConfiguration>>;  // of each wanted target
+  using Configurations = std::vector<std::vector<ViewingConfiguration>>;  // for each wanted target
 
-  // All must outlive it.
+  // All arguments must outlive it.
   CameraWork(const PictureTask& pictures, StudyFrames& frames, StudyConditions& conditions);
 
   [[nodiscard]] const PictureTask& pictures() const { return pictures_; }
   [[nodiscard]] Share all_batches() const { return {0, conditions_.batches()}; }
 
-  // All that the results depend on besides the scene.
+  // All input of the results besides the scene.
   [[nodiscard]] const Json& settings() const { return answers_key_; }
-  // Whether batches of conditions, and what comes with the first of them (the camera's picture, the
-  // study's pictures of it, the viewing configurations), were done before.
+  // Whether batches of conditions were done before, with the work that belongs to the first batch
+  // (the camera's picture, the study's pictures of it, the viewing configurations).
   [[nodiscard]] bool is_done(Share batches) const;
   [[nodiscard]] std::optional<Configurations> known_configurations() const;
   [[nodiscard]] std::optional<Judged> known_conditions() const;
   [[nodiscard]] std::optional<StudyFrames::Frame> known_frame(std::vector<StudyCost>& costs) const;
 
-  // Takes the frame's image.
+  // Moves the frame's image.
   [[nodiscard]] studies::BasisView view_of(StudyFrames::Frame& frame,
                                            std::vector<StudyCost>& costs) const;
   [[nodiscard]] Judged judge(const studies::BasisView& view, const StudyFrames::Frame& frame,
                              Share batches, std::vector<StudyCost>& costs) const;
-  // The camera's pictures, and what its wishes are answered by; nothing where an end is asked for.
+  // Draws the camera's pictures and returns its viewing configurations; no value if interrupted.
   [[nodiscard]] Configurations conclude(const studies::BasisView& view,
                                         std::vector<FigureEntry>& figures) const;
 
@@ -50,16 +50,16 @@ class CameraWork {
   Json answers_key_;
 };
 
-// A visibility study in parts: batches of conditions in the order of scenes and cameras, in shares.
+// A visibility study in parts: processes share batches of conditions, ordered by scene and camera.
 
 class StudyShares {
  public:
-  // The task's part is told how many there are.
+  // Sets the number of parts in the task.
   StudyShares(StudyTask& task, const Common& common, std::vector<const StudyPart*> parts);
 
-  // Joins the other parts and does what the task's part says: a share, or the solutions alone, and
-  // false; or sees that nothing is missing, and true. Throws base::Error (Work) where something is,
-  // or once it is interrupted.
+  // Joins the other parts and does the part's task. A share, or the solutions only: returns false.
+  // A merge: checks that nothing is missing and returns true. Throws base::Error (Work) if
+  // something is missing, or if interrupted.
   [[nodiscard]] bool run();
 
  private:
@@ -70,7 +70,7 @@ class StudyShares {
     StudyFrames frames;
     StudyConditions conditions;
   };
-  // first: number of the camera's first batch among all.
+  // first: index of the camera's first batch among all.
   using Visit = std::function<void(const CameraWork&, StudyFrames& frames, std::size_t first)>;
   void for_each_camera(const Visit& visit);
   [[nodiscard]] std::filesystem::path points() const;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// earthshine study visibility: all cameras and targets of the scene as it is; study orbit: along
-// the orbit; study run: a study file.
+// earthshine study visibility: all cameras and targets of the scene at its own position; study
+// orbit: along the orbit; study run: a study file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,8 +24,8 @@ struct VisibilityCall {
 };
 
 struct OrbitCall : VisibilityCall {
-  std::uint64_t positions = 0;  // 0: nobody asked
-  std::string at;               // positions in degrees, in any order, with commas between
+  std::uint64_t positions = 0;  // 0: unset
+  std::string at;               // positions in degrees, in any order, separated by commas
 };
 
 struct FileCall {
@@ -65,7 +65,7 @@ void add_options(CLI::App& parser, VisibilityCall& call) {
   add_tone_options(parser, call.tone, study_tone_help);
 }
 
-// Of a study that was made of the call.
+// The task of a study made from the call's options.
 StudyTask task_of(studies::StudyFile study, const VisibilityCall& call,
                   const std::string& command) {
   StudyTask task{std::move(study), call.study.folder, command, call.tone};
@@ -77,7 +77,7 @@ std::string cell(const Number& value, double factor, const char* unit) {
   return value ? fmt::format("{:.3g}{}", factor * *value, unit) : "-";
 }
 
-// Of one condition.
+// Text for one condition.
 std::string visibility_text(const StudyResults& study) {
   if (study.results.empty()) return study_text(study);
   constexpr const char* row = "{:<12} {:<24} {:>7} {:>8} {:>9} {:>9} {:>9} {:>9} {:>8}\n";

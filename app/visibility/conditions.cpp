@@ -15,7 +15,7 @@
 namespace earthshine::app {
 namespace {
 
-// Conditions that are kept together: a run that is killed loses no more of them.
+// Conditions per stored batch: a killed run loses at most one batch.
 constexpr std::size_t batch_size = 16;
 
 std::string condition_id(const StudyPart& part, std::size_t condition) {
@@ -120,7 +120,7 @@ Json StudyConditions::cache_key(const StudyCamera& camera, const Json& frame_cac
     cache_key["cctv"] = settings_json(camera.cctv->chain.camera);
     cache_key["monitor"] = monitor_json(camera.cctv->chain.monitor);
   }
-  // Reasons name objects, and how many there are of them depends on what is explained.
+  // Reasons name objects, and explained details depend on their number.
   for (const scenes::Object& object : part_.loaded.scene.objects) {
     cache_key["objects"].push_back(object.name);
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All conditions of one camera of a visibility study, in parallel, kept as they are finished.
+// Computes all conditions of one camera of a visibility study in parallel, and stores finished
+// ones.
 #pragma once
 
 #include <optional>
@@ -10,15 +11,15 @@
 
 namespace earthshine::app {
 
-// Conditions are numbered setting by setting, place by place.
+// Conditions are numbered by setting, then by position.
 [[nodiscard]] studies::ConditionAt condition_at(const StudyPart& part, std::size_t condition);
 
-// In the order of StudyPart: all places of the first lamp setting, then those of the second. Each
-// with that number of its scene.
+// In the order of StudyPart: all positions of the first lamp setting, then of the second. scene:
+// index of the scene for all of them.
 [[nodiscard]] std::vector<ConditionEntry> conditions_of(const StudyPart& part, std::size_t scene);
 
-// What was found of the scene's targets in each condition, in their order; none where a condition
-// was not reached.
+// Results for the scene's targets in each condition, in order; no value for a condition that was
+// not reached.
 using Judged = std::vector<std::optional<std::vector<TargetFindings>>>;
 
 class StudyConditions {
@@ -26,22 +27,22 @@ class StudyConditions {
   StudyConditions(const StudyPart& part, const studies::StudyFile& study, const ResultCache& store,
                   const Common& common);
 
-  // Conditions are worked out and kept in batches.
+  // Number of batches in which conditions are computed and stored.
   [[nodiscard]] std::size_t batches() const;
 
-  // None for conditions that were not reached before an interruption or are not in `batches`.
-  // frame: that the view was made of, with its cache key; its image is not looked at.
+  // No value for conditions that were not reached before an interruption or are not in `batches`.
+  // frame: source of the view, with its cache key; its image is not used.
   [[nodiscard]] Judged judge(const StudyCamera& camera, const studies::BasisView& view,
                              const StudyFrames::Frame& frame, const Json& frame_cache_key,
                              Share batches, std::vector<StudyCost>& costs);
-  // Whether a batch was done before.
+  // Whether a batch is stored.
   [[nodiscard]] bool has(const StudyCamera& camera, const Json& frame_cache_key,
                          std::size_t batch) const;
 
-  // The same if all of it was done before, without the picture.
+  // The results if all of them are stored; needs no picture.
   [[nodiscard]] std::optional<Judged> find(const StudyCamera& camera,
                                            const Json& frame_cache_key) const;
-  // Everything that the camera's conditions from `first` to before `last` depend on.
+  // All input of the camera's conditions [first, last).
   [[nodiscard]] Json cache_key(const StudyCamera& camera, const Json& frame_cache_key,
                                std::size_t first, std::size_t last) const;
 

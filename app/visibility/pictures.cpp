@@ -57,9 +57,9 @@ std::size_t setting_of(const StudyPart& part, const PictureWish& wish) {
   return static_cast<std::size_t>(found - settings.begin());
 }
 
-constexpr const char* same_end = "-same.png";  // by one white for all
+constexpr const char* same_end = "-same.png";  // with the common white
 
-// A file name of letters, digits, dots and dashes that no other wish has.
+// A unique file name of letters, digits, dots and dashes.
 std::string file_of(const studies::StudyFile& study, const PictureWish& wish) {
   std::string stem = wish.name;
   for (char& c : stem) {
@@ -153,7 +153,7 @@ void check_pictures(const studies::StudyFile& study, const std::vector<const Stu
 
 namespace {
 
-// The wishes that this camera of this scene draws.
+// The pictures that this camera of this scene draws.
 std::vector<const PictureWish*> own_wishes(const PictureTask& task) {
   std::vector<const PictureWish*> wishes;
   const std::string& name = task.camera.camera->name;
@@ -167,7 +167,7 @@ std::vector<const PictureWish*> own_wishes(const PictureTask& task) {
   return wishes;
 }
 
-// Everything that a picture depends on.
+// All input of a picture.
 Json cache_key_of(const PictureTask& task, const PictureWish& wish) {
   const studies::GroupWeights weights =
       task.part.basis->weights(place_of(task.part, wish), setting_of(task.part, wish));
@@ -196,7 +196,7 @@ bool is_there(const PictureTask& task, const PictureWish& wish) {
   const auto facts = task.store.find_facts(cache_key_of(task, wish), said);
   if (!facts) return false;
   const std::string stem = file_of(task.study, wish);
-  // The PNG of a clean picture is written last, of all together.
+  // The PNGs of clean pictures are written last, for all together.
   const bool png =
       !by_cctv(wish.shows) || (*facts)["png_bytes"] == bytes_of(task.folder / (stem + ".png"));
   return png && (*facts)["exr_bytes"] == bytes_of(task.folder / (stem + ".exr"));

@@ -18,7 +18,7 @@
 namespace earthshine::app {
 namespace {
 
-// One pass of the CCTV chain over a flat picture: what a condition takes at least.
+// One pass of the CCTV chain over a flat picture: minimum time of a condition.
 double chain_seconds(const StudyCamera& camera) {
   if (!camera.cctv) return 0.0;
   base::Image flat = base::make_rgb_image(camera.columns, camera.rows);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a visibility study would do and what that costs: --dry-run.
+// --dry-run: the work of a visibility study and its predicted cost.
 #pragma once
 
 #include <filesystem>
@@ -10,14 +10,14 @@
 
 namespace earthshine::app {
 
-// Solves and pictures are priced by a small run of each (studies/cost/cost.h), conditions by one.
-// What the folder already holds is named and costs nothing.
+// A small run of each predicts the cost of solves and pictures (studies/cost/cost.h), a single one
+// the cost of conditions. Stored results are listed at no cost.
 [[nodiscard]] Json plan_json(const studies::StudyFile& study,
                              const std::vector<const StudyPart*>& parts,
                              const std::filesystem::path& folder, const Common& common);
 
-// What the study asks for; where it asks for nothing, each camera by the first lamp setting at the
-// first place and, along an orbit, nearest to midnight, clean and by CCTV.
+// The requested pictures. By default each camera, clean and by CCTV, with the first lamp setting at
+// the first position and, along an orbit, at the one nearest to midnight.
 void fill_pictures(studies::StudyFile& study, const StudyPart& part);
 
 }  // namespace earthshine::app

@@ -17,7 +17,7 @@
 namespace earthshine::app {
 namespace {
 
-// Of a camera's conditions; all targets of one have that of its picture.
+// For a camera's conditions; all targets of a condition share its picture's noise.
 std::string noise_of_conditions(const CameraFindings& found,
                                 std::span<const ConditionEntry> conditions) {
   std::vector<studies::ConditionNoise> noise;
@@ -56,7 +56,7 @@ CameraEntry camera_entry(const CameraFindings& found, std::size_t scene,
   return entry;
 }
 
-// Where a scene's conditions begin.
+// Index of a scene's first condition.
 std::size_t first_condition(const StudyResults& results, std::size_t scene) {
   const auto first =
       std::find_if(results.conditions.begin(), results.conditions.end(),
@@ -84,7 +84,7 @@ Json settings_of(const studies::StudyFile& study, const std::string& command, st
           {"seed", seed}};
 }
 
-// What loading found, what the solution fell short of and what is not simulated.
+// Adds warnings from loading, limitations of the solution, and effects that are not simulated.
 void add_notes_of_scene(const StudyPart& part, const std::string& scene,
                         const std::vector<std::string>& limits, std::vector<std::string>& notes) {
   for (const std::string& warning : part.loaded.scene.warnings) {
@@ -127,7 +127,7 @@ std::optional<OrbitEntry> orbit_entry(const scenes::Scene& scene) {
       const Vec3 normal = glm::cross(-at.earth, at.velocity);
       entry.bay.push_back({position_deg, -at.earth.z, at.velocity.z, normal.z});
     } catch (const base::Error&) {
-      // A table of attitudes need not reach there.
+      // A table of attitudes may end before.
     }
   }
   return entry;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A visibility study's results, from what its cameras found.
+// Assembles a visibility study's results from the cameras' findings.
 #pragma once
 
 #include <optional>
@@ -13,25 +13,24 @@
 
 namespace earthshine::app {
 
-// One camera's part of the results.
+// Results of one camera.
 struct CameraFindings {
   const StudyPart& part;
   const StudyCamera& camera;
   double relative_noise = 0.0, render_seconds = 0.0;
   Judged conditions;
-  std::vector<ThumbnailEntry> thumbnails = {};  // with conditions numbered as these
+  std::vector<ThumbnailEntry> thumbnails = {};  // with conditions numbered as in `conditions`
 };
 
-// Scenes, targets, conditions, settings and provenance: what stands before any camera has looked.
+// Results before any camera: scenes, targets, conditions, settings and provenance.
 [[nodiscard]] StudyResults begin_results(const studies::StudyFile& study,
                                          const std::vector<const StudyPart*>& parts,
                                          const std::string& command, std::uint64_t seed);
 
-// The next camera with its results and thumbnails; conditions of its scene get their
-// earth_error.
+// Adds a camera with its results and thumbnails; sets earth_error of its scene's conditions.
 void add_camera(StudyResults& results, const CameraFindings& found);
 
-// limits: that each scene's solution reached, as `parts`.
+// limits: limitations of each scene's solution, in the order of `parts`.
 [[nodiscard]] std::vector<std::string> notes_of(
     const StudyResults& results, const std::vector<const StudyPart*>& parts,
     const std::vector<std::vector<std::string>>& limits);

@@ -42,13 +42,13 @@ std::vector<const StudyPart*> pointers(const Parts& parts) {
   return all;
 }
 
-// Whether the folder holds the results of a run that came to its end.
+// Whether the folder has the results of a complete run.
 bool has_finished_results(const fs::path& folder) {
   const Json study = json_in(folder / study_file);
   return study.is_object() && study.contains("complete") && study["complete"] == true;
 }
 
-// A CCTV camera for a camera that no scene has would go unnoticed.
+// Rejects a CCTV setting for a camera that no scene has, which would have no effect.
 void check_models(const studies::StudyFile& study, const std::vector<const StudyPart*>& parts) {
   std::vector<std::string> names;
   for (const StudyPart* part : parts) {
@@ -81,7 +81,7 @@ class Runner {
         if (!look_through(*part, camera, frames, conditions)) results_.complete = false;
       }
     }
-    // Of a study that was stopped there is nothing to conclude.
+    // A stopped study has no answers.
     for (std::size_t k = 0; results_.complete && k < ways_.size(); ++k) {
       results_.answers.push_back(answer_of(task_.study.wanted[k], task_.study, ways_[k]));
     }
@@ -92,7 +92,7 @@ class Runner {
   }
 
  private:
-  // Whether all was done.
+  // Returns whether everything was done.
   bool look_through(const StudyPart& part, const StudyCamera& camera, StudyFrames& frames,
                     StudyConditions& conditions) {
     CameraFindings found{part, camera, 0.0, 0.0, Judged(part.conditions())};
@@ -126,7 +126,7 @@ class Runner {
     }
   }
 
-  // Where an earlier run has done all of it, so that not even the picture must be read.
+  // Uses stored results if an earlier run completed the camera, without reading the picture.
   bool take_finished(const CameraWork& work, CameraFindings& found) {
     if (!pictures_are_there(work.pictures())) return false;
     const auto ways = work.known_configurations();
@@ -157,7 +157,7 @@ class Runner {
   const StudyTask& task_;
   const Common& common_;
   const std::vector<const StudyPart*> parts_;
-  std::vector<std::vector<std::string>> limits_;  // of each scene's solution
+  std::vector<std::vector<std::string>> limits_;  // per scene
   StudyResults results_;
   std::vector<std::vector<ViewingConfiguration>> ways_;
 };
@@ -179,13 +179,13 @@ void note_unused(const StudyTask& task) {
   }
 }
 
-// The scenes of the task, and its name and pictures where it says nothing of them.
+// Loads the scenes of the task, and sets its name and pictures if they are not given.
 Parts prepare(StudyTask& task, const Common& common) {
   if (!common.quiet) note_unused(task);
   Parts parts = prepare_parts(task.study, common);
   check_models(task.study, pointers(parts));
   if (!parts.front()->moments.empty()) {
-    task.study.timeline = false;  // no circle that closes
+    task.study.timeline = false;  // no closed circle
     task.study.positions_deg = parts.front()->positions_deg;
   }
   const std::string& scene = parts.front()->loaded.scene.name;
@@ -234,7 +234,7 @@ std::optional<StudyResults> run_study(StudyTask task, const Common& common) {
   base::write_text(fs::path(task.folder) / results_table, results_csv(study));
   ReportOptions how;
   how.quiet = common.quiet;
-  // As `report` will draw it anew.
+  // Identical to a later `report`.
   write_report(task.folder, read_results(study_file, json), how);
   if (!study.complete) {
     throw base::Error(
@@ -252,7 +252,7 @@ void run_and_print(StudyTask task, const Common& common, bool json, bool dry_run
   }
   note_unused_json(task.part, json, common.quiet);
   const std::optional<StudyResults> found = run_study(std::move(task), common);
-  if (!found) return;  // a part has nothing to tell
+  if (!found) return;  // a part has no output
   print(json ? dump_lines(to_json(*found)) : text(*found));
 }
 

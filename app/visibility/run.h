@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A visibility study from its plan to its folder: study.json, results.csv, report.html, pictures/.
-// What is finished is kept in points/, so that a run that was ended goes on from there.
+// Runs a visibility study and writes its folder: study.json, results.csv, report.html, pictures/.
+// Finished work is stored in points/, from which an interrupted run continues.
 #pragma once
 
 #include <optional>
@@ -21,21 +21,21 @@ inline constexpr const char* study_tone_help =
 struct StudyTask {
   studies::StudyFile study;
   std::string folder;
-  std::string command;   // what was called, for the report
+  std::string command;   // the call, for the report
   ToneChoice tone = {};  // of the clean pictures
   PartCall part = {};
 };
 
-// What study.json has; of a part, which writes nothing but points/, nothing. Throws base::Error for
-// bad input before any work is done, and (Work) after everything was written if it was interrupted,
-// or where a merge finds work missing.
+// Returns the contents of study.json; no value for a part, which writes only points/. Throws
+// base::Error for invalid input before any work, and (Work) after everything was written if it was
+// interrupted, or if a merge finds work missing.
 [[nodiscard]] std::optional<StudyResults> run_study(StudyTask task, const Common& common);
 
-// The same, or with `dry_run` its plan, on standard output: as JSON, or as `text` has it.
+// Runs the study, or with `dry_run` its plan, and prints the result: as JSON, or by `text`.
 void run_and_print(StudyTask task, const Common& common, bool json, bool dry_run,
                    std::string (*text)(const StudyResults& study) = study_text);
 
-// What would be done and its price; throws as run_study. For people: plan_text.
+// Planned work and its cost; throws as run_study. plan_text is for people.
 [[nodiscard]] Json plan_study(StudyTask task, const Common& common);
 [[nodiscard]] std::string plan_text(const Json& plan);
 

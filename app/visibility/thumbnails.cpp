@@ -16,8 +16,8 @@ namespace earthshine::app {
 namespace {
 
 constexpr int widest_px = 160;
-// A camera with at most as many conditions has a picture of each one in which a visible target is
-// missed.
+// Up to this number of conditions, a camera has a thumbnail of each one in which it misses a
+// visible target.
 constexpr std::size_t most_pictured = 36;
 
 double degrees_apart(double a, double b) { return std::abs(std::remainder(a - b, 360.0)); }
@@ -37,7 +37,7 @@ bool same_verdicts(const std::vector<TargetFindings>& one,
   });
 }
 
-// Means over squares of `step` pixels, `channels` values side by side.
+// Means over squares of `step` pixels with `channels` interleaved values.
 template <class Value, class Sum>
 std::vector<Value> shrunk(const std::vector<Value>& from, int width, int height, int channels,
                           int step) {
@@ -60,7 +60,7 @@ std::vector<Value> shrunk(const std::vector<Value>& from, int width, int height,
 
 int step_of(int width) { return (width + widest_px - 1) / widest_px; }
 
-// Its white, cd/m^2.
+// Returns its white, cd/m^2.
 double write_small(const std::filesystem::path& path, const base::Image& radiance) {
   const int step = step_of(radiance.width);
   base::Image small{radiance.width / step, radiance.height / step, {}};
@@ -80,7 +80,7 @@ void write_small(const std::filesystem::path& path, const degrade::Result& shown
       shrunk<std::uint8_t, int>(shown.pixels, shown.columns, shown.rows, shown.channels, step));
 }
 
-// Camera names may be alike but for characters that a file's name cannot have.
+// Camera names may differ only in characters that are not valid in file names.
 std::string stem_of(const PictureTask& task, std::size_t condition) {
   const auto number = &task.camera - task.part.cameras.data();
   return fmt::format("pictures/small-{}-{}-c{}", task.part.id, number + 1, condition);
@@ -123,7 +123,7 @@ double draw_small(const PictureTask& task, const studies::BasisView& view, std::
   return write_small(task.folder / files.front(), radiance);
 }
 
-// Of the small pictures, cd/m^2; nothing where one of them is missing in the folder.
+// Whites of the stored thumbnails, cd/m^2; no value if one of them is missing.
 std::optional<std::vector<double>> stored_whites(const CameraWork& work,
                                                  const std::vector<std::size_t>& conditions) {
   const PictureTask& task = work.pictures();

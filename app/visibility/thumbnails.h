@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small pictures of conditions, clean and on the monitor, from the layers that are at hand: the
-// report shows them beside the reasons of a cell.
+// Thumbnails of conditions, clean and on the monitor, from the available layers: the report shows
+// them with the reasons of a cell.
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,18 @@
 
 namespace earthshine::app {
 
-// Of one camera: under each lamp setting the places nearest to noon and to midnight, the first one,
-// each at which the verdict on a target is another than at the place before, and, of a camera with
-// few conditions, each at which a target that is not hidden is missed; of a study without an orbit all
-// conditions.
+// Conditions with a thumbnail. For one camera and each lamp setting: the positions nearest to noon
+// and to midnight, the first position, each position where a target's verdict changes, and, for a
+// camera with few conditions, each one at which a target that is not hidden is missed. In a study
+// without an orbit all conditions.
 [[nodiscard]] std::vector<std::size_t> pictured_conditions(const StudyPart& part,
                                                            const Judged& judged);
 
-// Whether all of them are there from an earlier run.
+// Whether all of them exist from an earlier run.
 [[nodiscard]] bool thumbnails_are_there(const CameraWork& work, const Judged& judged);
 
-// Draws those that are not there into pictures/, at most 160 pixels wide, each by its own exposure;
-// conditions are numbered as `judged`. view: null where all are there.
+// Draws the missing ones into pictures/, at most 160 pixels wide, with their own exposures;
+// conditions are numbered as in `judged`. view: null if all exist.
 [[nodiscard]] std::vector<ThumbnailEntry> draw_thumbnails(const CameraWork& work,
                                                           const studies::BasisView* view,
                                                           const Judged& judged);

@@ -8,8 +8,8 @@
     dark = frame.relight({"bay-lamps": 0.5})
     shown = earthshine.degrade(frame, seed=7)
 
-A scene stays loaded: each call computes again only what its changes touch. The same scene, settings and seed give the bytes of the
-command line. Lengths of outputs are metres, luminances cd/m2, colours linear with Rec. 709 primaries.
+A scene stays loaded: each call recomputes only what its changes affect. The same scene, settings and seed give the same
+bytes as the command line. Lengths are in metres, luminances in cd/m2, colours linear with Rec. 709 primaries.
 """
 from ._core import Error
 from ._core import version as __version__

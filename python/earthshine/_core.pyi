@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The C++ side. Requests and reports are JSON texts; the classes of the package give them names."""
+"""The C++ module. Requests and reports are JSON texts; the package's classes are its interface."""
 from collections.abc import Mapping
 
 import numpy as np
@@ -7,11 +7,11 @@ import numpy as np
 version: str
 
 class Error(Exception):
-    """What the program refuses, or could not do: where, what was found, what is allowed, what to do."""
+    """An invalid call or a failure: place, value found, allowed values, remedy."""
 
     blame: str  # "input": the call, the scene or a file is wrong; "work": the work failed
-    file: str  # or what else the message is about: an option, a setting; "" where there is none
-    line: int  # from 1; 0: not known
+    file: str  # or another subject of the message: an option, a setting; "" if none
+    line: int  # from 1; 0: unknown
     column: int
     found: str
     allowed: str  # may be empty

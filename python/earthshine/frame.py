@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures in memory, and what CCTV cameras make of them."""
+"""Pictures in memory, and the CCTV camera chain."""
 from __future__ import annotations
 
 import json
@@ -16,7 +16,7 @@ _UNITS = {"Z": "m", "range": "m", "P": "m", "N": "1", "albedo": "1", "object": "
 
 
 class Frame(Mapping[str, np.ndarray]):
-    """A picture: layers by channel name, each (rows, columns) float32, row 0 at the top; a view that may not be written to.
+    """A picture: layers by channel name, each (rows, columns) float32, row 0 at the top; read-only views.
 
     R, G, B are radiance in cd/m2, linear Rec. 709; other channels as in the EXR file: "light_sun.R", "Z", "N.X", "object" ...
     """
@@ -44,7 +44,7 @@ class Frame(Mapping[str, np.ndarray]):
         return self._core.shape
 
     def layer(self, name: str = "") -> np.ndarray:
-        """(rows, columns, channels) float32, a copy: "" is R, G, B; "light_sun", "N", "albedo" ... theirs."""
+        """(rows, columns, channels) float32, a copy: "" for R, G, B; "light_sun", "N", "albedo" ... for layers."""
         for parts in ("RGB", "XYZ"):
             channels = [f"{name}.{part}" if name else part for part in parts]
             if all(channel in self._layers for channel in channels):
@@ -62,14 +62,14 @@ class Frame(Mapping[str, np.ndarray]):
         return (self.rgb @ np.array([0.2126, 0.7152, 0.0722])).astype(np.float32)
 
     def unit(self, channel: str) -> str:
-        """Of a channel's values."""
+        """A channel's values."""
         return _UNITS.get(channel.split(".")[0], "1" if channel.startswith("Crypto") else "cd/m2")
 
     colour_space = "linear Rec. 709, white D65; luminance in cd/m2"
 
     @property
     def header(self) -> dict[str, Any]:
-        """What the EXR file says of the picture: scene, settings, seed, camera, samples, stated error."""
+        """The EXR header's data: scene, settings, seed, camera, samples, stated error."""
         return self._core.header
 
     @property
@@ -79,12 +79,12 @@ class Frame(Mapping[str, np.ndarray]):
 
     @property
     def objects(self) -> list[str]:
-        """Names by the numbers of the layer "object"."""
+        """Object names by number in the layer "object"."""
         return self.report.get("objects", json.loads(self.header.get("earthshine:objects", "[]")))
 
     @property
     def materials(self) -> list[str]:
-        """Names by the numbers of the layer "material"."""
+        """Material names by number in the layer "material"."""
         return self.report.get("materials", json.loads(self.header.get("earthshine:materials", "[]")))
 
     def mask(self, name: str) -> np.ndarray:
@@ -107,15 +107,15 @@ class Frame(Mapping[str, np.ndarray]):
         return np.linalg.inv(self.to_world)
 
     def relight(self, factors: Mapping[str, float | Sequence[float]]) -> Frame:
-        """The picture with its light groups times factors, each one or three (R, G, B); needs per_light=True."""
+        """The picture with its light groups multiplied by one or three (R, G, B) factors; needs per_light=True."""
         settings = [f"{group}={','.join(map(toml.number_text, np.atleast_1d(factor)))}" for group, factor in factors.items()]
         frame = Frame(_core.relight(self._core, settings))
-        # What was reported of the error and the rays is of the picture as it was drawn.
+        # Error and rays were reported for the original picture only.
         frame.report = {key: self.report[key] for key in ("camera", "groups", "objects", "materials") if key in self.report}
         return frame
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes all layers as OpenEXR, the bytes of the command line, or a tone-mapped PNG."""
+        """Writes all layers as OpenEXR, with the same bytes as the command line, or a tone-mapped PNG."""
         _core.write_frame(self._core, os.fspath(path))
 
     def _matrix(self, name: str, size: int) -> np.ndarray:
@@ -123,12 +123,12 @@ class Frame(Mapping[str, np.ndarray]):
 
 
 def open_frame(path: str | os.PathLike[str]) -> Frame:
-    """Reads an EXR file, whoever wrote it; its channels keep their names."""
+    """Reads an EXR file of any origin; its channels keep their names."""
     return Frame(_core.read_frame(os.fspath(path)))
 
 
 class Monitor:
-    """What the viewer of a CCTV camera's monitor sees."""
+    """The displayed picture of a CCTV camera's monitor."""
 
     def __init__(self, core: Any) -> None:
         self._core = core
@@ -141,7 +141,7 @@ class Monitor:
 
     @property
     def viewed(self) -> dict[str, np.ndarray]:
-        """The same as luminance on the screen, cd/m2: channel Y, or R, G, B."""
+        """The picture as luminance on the screen, cd/m2: channel Y, or R, G, B."""
         return self._core.viewed
 
     @property
@@ -151,7 +151,7 @@ class Monitor:
 
     @property
     def twin(self) -> dict[str, np.ndarray]:
-        """With twin=True: noise-free picture, mean, variance, SNR, probability of detection, as `degrade --twin` has them."""
+        """With twin=True: noise-free picture, mean, variance, SNR, probability of detection, as in `degrade --twin`."""
         return self._core.twin
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -162,11 +162,11 @@ class Monitor:
 def degrade(frame: Frame | np.ndarray | Mapping[str, np.ndarray], camera: str | None = None, *, seed: int = 1, frame_number: int = 0,
             twin: bool = False, target_resels: int = 5, off: Sequence[str] = (), fov_deg: float | None = None,
             before: Monitor | None = None) -> Monitor:
-    """Sends a picture through a CCTV camera and its monitor, as `degrade` does.
+    """Applies a CCTV camera and its monitor to a picture, as `degrade` does.
 
-    frame: a Frame, an array (rows, columns) or (rows, columns, 3) in cd/m2, or channels by name. camera: one that ships
-    ("sit-monochrome"), FILE.toml or FILE.toml:NAME; without it the one of the frame's own camera. frame_number: other noise.
-    before: the frame before, for cameras with lag or a slow iris.
+    frame: a Frame, an array (rows, columns) or (rows, columns, 3) in cd/m2, or channels by name. camera: a built-in one
+    ("sit-monochrome"), FILE.toml or FILE.toml:NAME; default: the CCTV of the frame's own camera. frame_number: selects the noise.
+    before: the previous frame, for cameras with lag or a slow iris.
     """
     if isinstance(frame, Frame):
         core = frame._core

@@ -16,15 +16,15 @@ from . import _core, toml
 from .frame import Frame
 
 _METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
-# Of cameras and lights: what the core knows of them in metres, by the file's key.
+# Keys of cameras and lights that the core returns in metres.
 _LENGTHS = {"position": "position_m", "look_at": "look_at_m"}
 
 
 class Entry:
     """One table of the scene: a camera, light, material, object, or [sun], [earth], [orbit], [quality].
 
-    Its attributes are the keys of docs/scene-format.md, in the file's units: reading one gives the value in force, setting one is a
-    --set. A value that the format refuses is an Error of the next call, and the scene is as it was before.
+    Its attributes are the keys of docs/scene-format.md, in the file's units: reading returns the present value, setting is like
+    --set. An invalid value raises Error in the next call, and the scene stays as it was.
     """
 
     def __init__(self, scene: Scene, table: str, name: str | None = None) -> None:
@@ -52,7 +52,7 @@ class Entry:
 
     @property
     def info(self) -> dict[str, Any]:
-        """What the program made of the table, lengths in metres."""
+        """The interpreted table, lengths in metres."""
         return self._scene._described(self._table, self.name)
 
 
@@ -61,7 +61,7 @@ class Camera(Entry):
 
     @property
     def to_world(self) -> np.ndarray:
-        """4x4: (x right, y down, z forward, 1) in metres to the scene, as OpenCV has its axes. Settable."""
+        """4x4: (x right, y down, z forward, 1) in metres to the scene, with OpenCV's axes. Settable."""
         return np.array(self.info["to_world"]).reshape(4, 4)
 
     @to_world.setter
@@ -75,7 +75,7 @@ class Camera(Entry):
 
     @property
     def to_world_gl(self) -> np.ndarray:
-        """The same with the axes of OpenGL and Blender: x right, y up, z backward. Settable."""
+        """4x4 like to_world, with the axes of OpenGL and Blender: x right, y up, z backward. Settable."""
         return self.to_world @ np.diag([1.0, -1.0, -1.0, 1.0])
 
     @to_world_gl.setter
@@ -93,7 +93,7 @@ class Body(Entry):
 
     @property
     def pose(self) -> np.ndarray:
-        """4x4, metres: the mesh's own coordinates to the scene. Settable: a turn, scales along the mesh's axes, a shift."""
+        """4x4, metres: the mesh's own coordinates to the scene. Settable: rotation, scales along the mesh's axes, translation."""
         unit = self._scene.unit_m
         scale = np.broadcast_to(np.asarray(self._known("scale", 1.0), dtype=float), 3)
         matrix = np.eye(4)
@@ -128,11 +128,11 @@ def _turn(degrees: np.ndarray) -> np.ndarray:
 
 
 def _angles(turn: np.ndarray) -> np.ndarray:
-    """Degrees about x, y and z of which _turn makes the matrix."""
+    """Degrees about x, y and z that give the rotation matrix: the inverse of _turn."""
     y = np.arctan2(-turn[2, 0], np.hypot(turn[0, 0], turn[1, 0]))
     if abs(turn[2, 0]) < 1 - 1e-12:
         return np.degrees([np.arctan2(turn[2, 1], turn[2, 2]), y, np.arctan2(turn[1, 0], turn[0, 0])])
-    # Straight up or down: x and z turn about the same axis.
+    # Gimbal lock: x and z rotate about the same axis.
     return np.degrees([np.arctan2(-turn[1, 2], turn[1, 1]), y, 0.0])
 
 
@@ -152,7 +152,7 @@ def _rigid(matrix: Any) -> np.ndarray:
 
 
 class Entries(Mapping[str, Any]):
-    """The tables of one kind by name, in the order of the scene."""
+    """The tables of one kind by name, in scene order."""
 
     def __init__(self, scene: Scene, table: str, kind: type[Entry]) -> None:
         self._scene, self._table, self._kind = scene, table, kind
@@ -174,19 +174,19 @@ class Entries(Mapping[str, Any]):
 
 @dataclass(frozen=True)
 class FormFactors:
-    """Of diffuse light that leaves object i evenly, F[i, j] is the share that lands on object j; no unit."""
+    """F[i, j]: share of diffuse light from object i, uniform over it, that arrives at object j; no unit."""
 
     objects: list[str]
     F: np.ndarray  # (n, n)
     std_error: np.ndarray  # (n, n)
-    sky: np.ndarray  # (n,): the share that leaves the scene
-    black: np.ndarray  # (n,): the share that black backs take
+    sky: np.ndarray  # (n,): share to the sky
+    black: np.ndarray  # (n,): share absorbed by black backs
     area_m2: np.ndarray  # (n,)
     report: dict[str, Any]
 
 
 class Solution:
-    """The radiosity of a scene, a row a patch; arrays may not be written to."""
+    """The radiosity of a scene, one row per patch; arrays are read-only."""
 
     def __init__(self, scene: Scene, core: Any) -> None:
         self._scene, self._core = scene, core
@@ -196,17 +196,17 @@ class Solution:
 
     @property
     def radiosity(self) -> np.ndarray:
-        """(patches, groups, 3) float32, lm/m2, of light that surfaces reflect or send through form factors."""
+        """(patches, groups, 3) float32, lm/m2: reflected light and exitance carried by form factors."""
         return self._core.radiosity
 
     @property
     def direct(self) -> np.ndarray:
-        """(patches, groups, 3) float32, lx straight from lamps, Sun and Earth."""
+        """(patches, groups, 3) float32, lx: direct illuminance from lamps, Sun and Earth."""
         return self._core.direct
 
     @property
     def indirect(self) -> np.ndarray:
-        """(patches, groups, 3) float32, lx by way of other surfaces."""
+        """(patches, groups, 3) float32, lx: indirect illuminance."""
         return self._core.indirect
 
     @property
@@ -226,7 +226,7 @@ class Solution:
 
     @property
     def object(self) -> np.ndarray:
-        """(patches,) uint32, number in the order of scene.objects."""
+        """(patches,) uint32, index in scene.objects."""
         return self._core.object
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -235,7 +235,7 @@ class Solution:
 
 
 class Scene:
-    """A scene that stays loaded; load() and load_dict() make one."""
+    """A scene that stays loaded; made by load() and load_dict()."""
 
     def __init__(self, path: str, text: str | None, tree: Mapping[str, Any], settings: Mapping[str, Any]) -> None:
         self._core = _core.Session(path, text)
@@ -244,14 +244,14 @@ class Scene:
         self._good: dict[str, Any] = {}
         self._description: dict[str, Any] | None = None
         self.path = path
-        self.threads = 0  # of each call; 0: all cores. Results do not depend on it.
+        self.threads = 0  # per call; 0: all cores. Results do not depend on it.
         self._sync()
 
-    # What is there.
+    # Contents.
 
     @property
     def description(self) -> dict[str, Any]:
-        """All that was read: cameras, lights, materials, objects with bounds (m), light groups, warnings."""
+        """The scene as read: cameras, lights, materials, objects with bounds (m), light groups, warnings."""
         self._sync()
         if self._description is None:
             self._description = json.loads(self._core.describe())
@@ -259,17 +259,17 @@ class Scene:
 
     @property
     def unit_m(self) -> float:
-        """Metres in the scene's `unit`."""
+        """Metres per `unit` of the scene."""
         return _METRES[self._settings.get("unit", self._tree.get("unit", "m"))]
 
     @property
     def warnings(self) -> list[str]:
-        """Input that is surely a mistake, and what was mended."""
+        """Likely mistakes in the input, and repairs."""
         return self.description["warnings"]
 
     @property
     def light_groups(self) -> list[str]:
-        """Names of the groups that give light, as frame.relight takes them."""
+        """Names of the active light groups, for frame.relight."""
         return self.description["light_groups"]
 
     @property
@@ -284,7 +284,7 @@ class Scene:
 
     @property
     def materials(self) -> Mapping[str, Entry]:
-        """[[material]] by name, those of mesh files after them."""
+        """[[material]] by name, followed by materials of mesh files."""
         return Entries(self, "material", Entry)
 
     @property
@@ -316,14 +316,14 @@ class Scene:
 
     def set(self, key: str, value: Any) -> None:
         """Changes a key as --set does: set("camera.B.fov_deg", 30)."""
-        toml.value_text(value)  # what is no value at all is said here
+        toml.value_text(value)  # raises for values without a TOML form
         self._settings.pop(key, None)
         self._settings[key] = value
         self._description = None
 
     @property
     def settings(self) -> list[str]:
-        """All changes as --set has them: the command line with these draws the same bytes."""
+        """All changes in --set syntax: with them the command line gives the same bytes."""
         return [f"{key}={toml.value_text(value)}" for key, value in self._settings.items()]
 
     # Work.
@@ -333,11 +333,11 @@ class Scene:
                state_error: bool = True, time_limit: float | None = None, crop: tuple[int, int, int, int] | None = None,
                indirect: str = "radiosity", caustics: bool = True, distributed_lights: int | None = None,
                distributed_over: str | None = None, all_effects: bool = False) -> Frame:
-        """Draws a camera's picture (the first camera's unless named), as `render` does with the options of these names.
+        """Renders one camera (default: the first), as `render` does with the options of the same names.
 
-        error: wanted, relative; without it that of the scene, else 5 %. size: (columns, rows). layers: "depth", "normal", "object" ...
-        per_light: a layer per light group, for relight(). solution: of solve(), in place of the scene's own solve, with as many
-        samples as [quality] says. crop: (x, y, columns, rows). state_error=False: --no-error. time_limit: s.
+        error: wanted relative error; default: the scene's, else 5 %. size: (columns, rows). layers: "depth", "normal", "object" ...
+        per_light: a layer per light group, for relight(). solution: from solve(), instead of the scene's own solve, with the
+        samples of [quality]. crop: (x, y, columns, rows). state_error=False: --no-error. time_limit: s.
         """
         request = {"cameras": [] if camera is None else [camera], "error": error, "size": size, "layers": list(layers),
                    "per_light": per_light, "seed": seed, "no_error": not state_error, "time_limit": time_limit, "crop": crop,
@@ -347,30 +347,30 @@ class Scene:
         return Frame(core.render(self._request(request), None if solution is None else solution._core))
 
     def solve(self, *, error: float | None = None, seed: int = 1, time_limit: float | None = None) -> Solution:
-        """Solves the radiosity for itself, as `solve` does. error: wanted over the surfaces, relative; time_limit: s."""
+        """Solves the radiosity alone, as `solve` does. error: wanted over the surfaces, relative; time_limit: s."""
         core = self._sync()
         return Solution(self, core.solve(self._request({"error": error, "seed": seed, "time_limit": time_limit})))
 
     def plan(self, cameras: str | Sequence[str] = (), *, error: float | None = None, size: tuple[int, int] | None = None,
              layers: Sequence[str] = (), per_light: bool = False, seed: int = 1, indirect: str = "radiosity",
              cctv: bool = False, ranks: int = 0) -> dict[str, Any]:
-        """Says beforehand which effects will run and why, and the rays, seconds and MiB: the report of `plan --json`."""
+        """Predicts which effects will run and why, and the rays, seconds and MiB: the report of `plan --json`."""
         request = {"cameras": [cameras] if isinstance(cameras, str) else list(cameras), "error": error, "size": size,
                    "layers": list(layers), "per_light": per_light, "seed": seed, "indirect": indirect, "cctv": cctv, "ranks": ranks}
         return json.loads(self._sync().plan(self._request(request)))
 
     def form_factors(self, method: str = "auto", *, raw: bool = False, seed: int = 1) -> FormFactors:
-        """Form factors between objects. method: "rays", "exact" (analytic), or "auto": exact where that is quick."""
+        """Form factors between objects. method: "rays", "exact" (analytic), or "auto": exact if it is fast."""
         found = json.loads(self._sync().form_factors(self._request({"method": method, "raw": raw, "seed": seed})))
         arrays = {key: np.array(found.pop(key)) for key in ("F", "std_error", "sky", "black", "area_m2")}
         return FormFactors(objects=found.pop("objects"), report=found, **arrays)
 
     @property
     def work(self) -> dict[str, int]:
-        """How often the scene was read, its ray structure built, its light solved and a picture drawn."""
+        """Counts of scene reads, ray structures, solves and pictures."""
         return json.loads(self._core.work())
 
-    # Within.
+    # Internal.
 
     def _request(self, request: Mapping[str, Any]) -> str:
         def plain(value: Any) -> Any:
@@ -380,7 +380,7 @@ class Scene:
         return json.dumps({**request, "threads": self.threads}, default=plain)
 
     def _sync(self) -> Any:
-        """The core with all changes read; without those since the last call where one of them is refused."""
+        """The core with all changes read. If a change is rejected, the changes since the last call are undone."""
         if self._description is None:
             self._core.set(self.settings)
             try:
@@ -414,19 +414,19 @@ class Scene:
 
 
 def load(path: str | os.PathLike[str], set: Mapping[str, Any] | Iterable[str] | None = None) -> Scene:  # noqa: A002
-    """Loads a scene file. set: changes by key, {"camera.B.fov_deg": 30}, or as --set has them, ["camera.B.fov_deg=30"]."""
+    """Loads a scene file. set: changes by key, {"camera.B.fov_deg": 30}, or in --set syntax, ["camera.B.fov_deg=30"]."""
     name = os.fspath(path)
     try:
         tree = tomllib.loads(pathlib.Path(name).read_text(encoding="utf-8"))
     except (OSError, ValueError):
-        tree = {}  # the core says what is wrong, with the line
+        tree = {}  # the core reports the error with its line
     return Scene(name, None, tree, toml.settings_of(set))
 
 
 def load_dict(tree: Mapping[str, Any], folder: str | os.PathLike[str] = ".", set: Mapping[str, Any] | Iterable[str] | None = None) -> Scene:  # noqa: A002
     """A scene from nested mappings with the keys of the scene file.
 
-    Named tables are lists of mappings, or mappings by name: {"camera": {"A": {"position": ...}}}. Meshes are looked for in `folder`.
+    Named tables are lists of mappings, or mappings by name: {"camera": {"A": {"position": ...}}}. Meshes are relative to `folder`.
     """
     tree = {"format": 1, **tree}
     return Scene(os.path.join(os.fspath(folder), "scene"), toml.document(tree), tree, toml.settings_of(set))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Studies: questions answered about scenes, into a folder and as tables."""
+"""Studies of scenes, with a folder of output files and tables."""
 from __future__ import annotations
 
 import csv
@@ -15,7 +15,7 @@ from . import _core, toml
 
 
 class Study:
-    """What a visibility study found: a row per condition, camera and target (docs/visibility.md has the columns)."""
+    """Results of a visibility study: one row per condition, camera and target (docs/visibility.md has the columns)."""
 
     def __init__(self, folder: str, found: Mapping[str, Any]) -> None:
         self.folder = folder
@@ -23,13 +23,13 @@ class Study:
         self.records: np.ndarray = records_of(found["table"])
 
     def to_pandas(self) -> Any:
-        """The records as a pandas.DataFrame, where pandas is installed."""
+        """The records as a pandas.DataFrame, if pandas is installed."""
         import pandas  # noqa: PLC0415 - optional
         return pandas.DataFrame.from_records(self.records)
 
 
 def records_of(table: str) -> np.ndarray:
-    """Comma-separated values as a structured array: numbers as float64 (NaN where a cell is empty), true and false as bool."""
+    """Comma-separated values as a structured array: numbers as float64 (NaN for empty cells), true and false as bool."""
     head, *rows = csv.reader(io.StringIO(table))
     columns = []
     for cells in zip(*rows) if rows else ([] for _ in head):
@@ -53,7 +53,7 @@ def _run(folder: str | os.PathLike[str], request: Mapping[str, Any]) -> Study:
 
 
 def study(path: str | os.PathLike[str], folder: str | os.PathLike[str], *, seed: int = 1) -> Study:
-    """Runs a study file into a folder, as `study run`; goes on where an earlier run was ended."""
+    """Runs a study file into a folder, as `study run`; continues an interrupted run."""
     return _run(folder, {"kind": "run", "path": os.fspath(path), "seed": seed})
 
 
@@ -67,7 +67,7 @@ def visibility(path: str | os.PathLike[str], folder: str | os.PathLike[str], *, 
 def orbit(path: str | os.PathLike[str], folder: str | os.PathLike[str], *, positions: int = 36,
           set: Mapping[str, Any] | Iterable[str] | None = None, error: float | None = None, cameras: Sequence[str] = (),  # noqa: A002
           size: tuple[int, int] | None = None, wanted: Sequence[str] = (), seed: int = 1) -> Study:
-    """The same at `positions` along the scene's orbit, as `study orbit`."""
+    """Visibility at `positions` along the scene's orbit, as `study orbit`."""
     return _run(folder, {**_request("orbit", path, set, error, cameras, size, wanted, seed), "positions": positions})
 
 

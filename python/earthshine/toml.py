@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values as TOML, and back: the scene file's language."""
+"""Converts values to TOML and back."""
 from __future__ import annotations
 
 import json
@@ -13,7 +13,7 @@ NAMED = ("material", "object", "light", "area", "camera", "cctv", "range_sensor"
 
 
 def number_text(value: float) -> str:
-    """The shortest text that reads back as the number; whole numbers without a point."""
+    """The shortest text that reads back as the number; integers without a point."""
     text = repr(float(value))
     return text[:-2] if text.endswith(".0") else text
 
@@ -38,7 +38,7 @@ def value_text(value: Any) -> str:
 
 
 def settings_of(given: Mapping[str, Any] | Iterable[str] | None) -> dict[str, Any]:
-    """Settings by key, from a mapping or from "key=value" texts as --set has them."""
+    """Settings by key, from a mapping or from "key=value" texts in --set syntax."""
     if given is None:
         return {}
     if isinstance(given, Mapping):
@@ -58,7 +58,7 @@ def settings_of(given: Mapping[str, Any] | Iterable[str] | None) -> dict[str, An
 
 
 def document(tree: Mapping[str, Any]) -> str:
-    """A scene as nested mappings to the text of its file. Named tables are lists of mappings, or mappings from names to mappings."""
+    """Nested mappings as the text of a scene file. Named tables are lists of mappings, or mappings from names to mappings."""
     lines = [f"{key} = {value_text(value)}" for key, value in tree.items()
              if not isinstance(value, Mapping) and key not in NAMED]
     for key, value in tree.items():

@@ -13,16 +13,16 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr double least_volume_share = 1e-9;  // of its box: below it a surface holds nothing
-constexpr double most_cells = 512.0;         // per way of the grid
+constexpr double least_volume_share = 1e-9;  // of its box: a smaller volume encloses nothing
+constexpr double most_cells = 512.0;         // per axis of the grid
 constexpr std::uint32_t none = 0xFFFFFFFFU;
 constexpr std::uint32_t first_hole = 0x80000000U;   // from here on: masked triangles
-constexpr std::uint32_t first_front = 0xA0000000U;  // } triangles that others lie on
+constexpr std::uint32_t first_front = 0xA0000000U;  // } triangles covered by others
 constexpr std::uint32_t first_back = 0xC0000000U;   // }
-constexpr std::uint32_t outside = none;             // stands for a body: all that is in no room
+constexpr std::uint32_t outside = none;             // pseudo-body: all outside rooms
 
-// Whether the half-line from p along +x crosses the edge, +1 upward, -1 downward. The same edge the
-// other way round gives the opposite number to the last bit.
+// Whether the half-line from p along +x crosses the edge: +1 upward, -1 downward. The reversed edge
+// gives exactly the opposite number.
 int crossing(const Vec3& from, const Vec3& to, const Vec3& p) {
   const bool up = from.y <= p.y && p.y < to.y, down = to.y <= p.y && p.y < from.y;
   if (!up && !down) return 0;
@@ -86,10 +86,10 @@ int ClosedSurface::winding(const Vec3& point) const {
   int winding = 0;
   for (std::uint32_t k = first_[at]; k < first_[at + 1]; ++k) {
     const auto& [a, b, c] = triangles_[of_cell_[k]];
-    if (std::max({a.z, b.z, c.z}) < p.z) break;  // and so are all that follow: none is beyond
+    if (std::max({a.z, b.z, c.z}) < p.z) break;  // so are all later triangles: none is beyond
     const int turns = crossing(a, b, p) + crossing(b, c, p) + crossing(c, a, p);
     if (turns == 0) continue;
-    // Beyond the point along the axis: the point is behind the face if it winds upward.
+    // Beyond the point along the axis: the point is behind an upward-winding face.
     if (turns * glm::dot(glm::cross(b - a, c - a), p - a) < 0.0) winding += turns;
   }
   return winding;
@@ -98,7 +98,7 @@ int ClosedSurface::winding(const Vec3& point) const {
 bool is_covered_by_faces(const scenes::CoincidentFaces& coincident, const Patches& patches,
                          std::uint32_t patch) {
   const Facet& facet = patches.facets[patches.facet[patch]];
-  if (facet.is_cluster()) return false;  // they leave such triangles out
+  if (facet.is_cluster()) return false;  // clusters exclude such triangles
   const bool front = patches.is_back[patch] == 0;
   return coincident.is_covered(facet.triangle, front) ||
          (facet.parallelogram && coincident.is_covered(facet.triangle + 1, front));
@@ -153,7 +153,7 @@ ClosedBodies::ClosedBodies(const scenes::Scene& scene, const Vec3& centre)
   dark_outside_ = !cavities_.empty() && light_is_in_rooms(scene, parts.of, walls);
 }
 
-// Where a lamp stands light is meant to be: a room whose faces look the wrong way.
+// A lamp inside means light inside: the body is a room with inverted faces.
 void ClosedBodies::leave_out_lit(const scenes::Scene& scene) {
   for (auto b = static_cast<std::uint32_t>(bodies_.size()); b-- > 0;) {
     const bool lit =
@@ -170,8 +170,8 @@ bool ClosedBodies::in_room(const Vec3& point) const {
                      [&](const ClosedSurface& room) { return room.winding(point) < 0; });
 }
 
-// No sky shines, every lamp stands in a room, and everything that shines hangs together with a wall
-// of one or has a corner in one.
+// Whether the sky is dark, every lamp is in a room, and every emitting surface is connected with a
+// room's wall or has a vertex in a room.
 bool ClosedBodies::light_is_in_rooms(const scenes::Scene& scene,
                                      const std::vector<std::uint32_t>& part_of,
                                      const std::vector<char>& walls) const {
@@ -218,12 +218,12 @@ std::vector<std::uint32_t> ClosedBodies::near(const Patches& patches, std::uint3
   return found;
 }
 
-// The point lies a hair's breadth over the triangle: its weights there.
+// The point lies just above the triangle: computes its barycentric coordinates.
 bool ClosedBodies::in_hole(const Vec3& point, std::uint32_t number) const {
   const auto& [a, b, c] = masked_[number];
   const auto [u, v] = scenes::barycentric(point, a, b - a, c - a);
   constexpr double rounding = 1e-5;
-  if (u < -rounding || v < -rounding || u + v > 1.0 + rounding) return false;  // the other half
+  if (u < -rounding || v < -rounding || u + v > 1.0 + rounding) return false;  // other half
   return masks_.has_hole(number, u, v);
 }
 

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies that hide what stands or lies in them: the part of a floor under a box, the part of a
-// strut inside a wall. No light reaches such points and none leaves them.
+// Bodies that cover parts of other objects: the floor under a box, the part of a strut inside a
+// wall. Such points neither receive nor send light.
 //
-// A body is a closed surface of opaque one-sided faces that look outward: parts that hang together
-// by edges (alike corners to the last bit), every edge used equally often both ways. How often such
-// a surface winds around a point is a whole number, whatever way one looks: 1 inside, 0 outside. A
-// room that is seen from inside (faces inward, winding -1) covers nothing, and lays open what it
-// takes from a body around it (a house: walls within an outer shell). Where all light there is
-// shines in such rooms, what pokes out of them is covered too: the foot of a box that stands on a
-// floor, or is sunk in it, has nothing to receive beyond the floor and nobody to send it to.
-// A hole that rests on another surface all around is stopped up by it (closed_parts.h).
-// Sheets, glass, other open meshes and meshes with some faces turned over cover nothing: where
-// their inside is cannot be told. Faces that lie on others (scenes/health/coincident.h) are counted
-// with what covers, and the holes of an opacity mask with what is covered: nothing is there either.
+// A body is a closed surface of opaque one-sided faces with outward normals: triangles connected by
+// edges (exactly equal vertices), every edge used equally often in both directions. The winding
+// number of such a surface about a point is an integer in every direction: 1 inside, 0 outside. A
+// room that is seen from inside (faces inward, winding -1) covers nothing and uncovers its volume
+// of a body around it (a house: walls inside an outer shell). If all light sources are in such
+// rooms, everything outside the rooms is covered too: the foot of a box on or in a floor receives
+// and sends nothing below the floor. A hole that rests on another surface all around counts as
+// closed (closed_parts.h). Sheets, glass, other open meshes and meshes with mixed winding cover
+// nothing, because their inside is undefined. Faces with other faces on them
+// (scenes/health/coincident.h) and the holes of opacity masks count as covered.
 #pragma once
 
 #include <cstdint>
@@ -26,13 +25,12 @@
 
 namespace earthshine::radiosity {
 
-// A closed surface, seen along its shortest side: the number of times that it winds around a point
-// is the sum over its triangles beyond the point of the times that they wind around it in
-// projection, +1, 0 or -1. Each edge is decided once for both of its triangles, so that no point
-// falls between two of them.
+// A closed surface, projected along its shortest side. Its winding number about a point is the sum
+// of the projected winding numbers, +1, 0 or -1, of its triangles beyond the point. Each edge is
+// evaluated identically for both of its triangles, so that no point falls between them.
 class ClosedSurface {
  public:
-  // Three corners a triangle.
+  // corners: three per triangle.
   explicit ClosedSurface(std::span<const Vec3> corners);
 
   [[nodiscard]] int winding(const Vec3& point) const;
@@ -43,7 +41,7 @@ class ClosedSurface {
     return glm::all(glm::greaterThanEqual(low_, other.low_)) &&
            glm::all(glm::lessThanEqual(high_, other.high_));
   }
-  [[nodiscard]] double volume_m3() const { return volume_m3_; }  // positive if it looks outward
+  [[nodiscard]] double volume_m3() const { return volume_m3_; }  // positive if oriented outward
   [[nodiscard]] double box_m3() const {
     const Vec3 size = high_ - low_;
     return size.x * size.y * size.z;
@@ -53,7 +51,7 @@ class ClosedSurface {
   struct Corners {
     Vec3 a, b, c;
   };
-  // The axis to look along comes last; a turn, so that what ran counter-clockwise still does.
+  // Makes the projection axis the last one by a cyclic permutation, which preserves orientation.
   [[nodiscard]] Vec3 turned(const Vec3& p) const {
     return axis_ == 2 ? p : axis_ == 1 ? Vec3(p.z, p.x, p.y) : Vec3(p.y, p.z, p.x);
   }
@@ -62,25 +60,25 @@ class ClosedSurface {
   Vec3 low_{0.0}, high_{0.0};
   double volume_m3_ = 0.0;
   int axis_ = 2;
-  std::vector<Corners> triangles_;  // turned
-  // A grid over the projection: which triangles may wind around a cell's points, those that reach
-  // farthest first.
-  std::size_t cells_ = 1;              // per way
-  Vec3 corner_{0.0}, cell_size_{1.0};  // turned
+  std::vector<Corners> triangles_;  // rotated by turned()
+  // A grid over the projection: for each cell the triangles that may wind around its points,
+  // ordered by their farthest extent.
+  std::size_t cells_ = 1;              // per axis
+  Vec3 corner_{0.0}, cell_size_{1.0};  // rotated by turned()
   std::vector<std::uint32_t> first_, of_cell_;
 };
 
-// Whether other faces lie on the patch, or part of it.
+// Whether other faces cover the patch or part of it.
 [[nodiscard]] bool is_covered_by_faces(const scenes::CoincidentFaces& coincident,
                                        const Patches& patches, std::uint32_t patch);
 
 class ClosedBodies {
  public:
-  // Points, here and below, are relative to `centre`. A body in which a lamp stands is none.
+  // Points, here and below, are relative to `centre`. A body that contains a lamp is excluded.
   ClosedBodies(const scenes::Scene& scene, const Vec3& centre);
 
-  // What may cover points within margin_m of a patch: bodies, the dark outside, what lies on the
-  // patch's own triangles, and the holes of their opacity mask, where they are not.
+  // Possible covers of points within margin_m of a patch: bodies, the dark outside, faces on the
+  // patch's own triangles, and the holes of their opacity mask.
   [[nodiscard]] std::vector<std::uint32_t> near(const Patches& patches, std::uint32_t patch,
                                                 double margin_m) const;
   [[nodiscard]] bool cover(const Vec3& point, std::span<const std::uint32_t> bodies) const;
@@ -101,7 +99,7 @@ class ClosedBodies {
 
   Vec3 centre_;
   std::vector<Body> bodies_;
-  std::vector<ClosedSurface> cavities_;  // rooms among them
+  std::vector<ClosedSurface> cavities_;  // including rooms
   bool dark_outside_ = false;
   scenes::OpacityMasks masks_;
   struct Corners {

@@ -24,7 +24,7 @@ struct EdgeUse {
 };
 
 constexpr double touch_share = 1e-6;  // of the scene's diagonal
-constexpr double flat = 1e-6;         // of cosines: the same plane
+constexpr double flat = 1e-6;         // tolerance of cosines for coplanar faces
 
 using Rim = std::span<const ClosedParts::RimEdge>;
 
@@ -43,7 +43,7 @@ class Stopper {
     touch_m_ = touch_share * glm::length(high - low);
   }
 
-  // Empty where the hole is open.
+  // Triangles that close the hole; empty if it is open.
   [[nodiscard]] std::vector<Vec3> close(Rim rim) const {
     const Vec3 hub = at(rim.front().from);
     std::vector<Vec3> cap;
@@ -75,7 +75,7 @@ class Stopper {
     });
   }
 
-  // Of other parts, in the hole's plane and facing it.
+  // Triangles of other parts in the hole's plane that face it.
   [[nodiscard]] std::vector<std::uint32_t> touching(std::uint32_t part, const Vec3& hub,
                                                     const Vec3& outward) const {
     std::vector<std::uint32_t> found;
@@ -107,9 +107,9 @@ class Stopper {
   double touch_m_ = 0.0;
 };
 
-// Of every edge, by object and triangle.
+// Sorts the uses of all edges by edge, object and triangle.
 void sort_by_edge(std::vector<EdgeUse>& uses, std::size_t vertices) {
-  // Few edges have the same lower end: what is left to sort are a handful.
+  // Bucket sort by the lower vertex: each bucket has a handful of edges.
   std::vector<std::uint32_t> first(vertices + 1, 0);
   for (const EdgeUse& use : uses) ++first[use.low + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());
@@ -157,8 +157,8 @@ ClosedParts find_closed_parts(const scenes::Scene& scene, const std::vector<char
     parts.of[std::max(ra, rb)] = std::min(ra, rb);
   };
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
-    // An object whose own faces close at this edge hangs together there without the others: a box
-    // in the corner of a room is no part of the room.
+    // If an object's own faces are closed at this edge, they are connected without the others: a
+    // box in the corner of a room is no part of the room.
     int net = 0;
     std::uint32_t loose = no_triangle;
     while (end < uses.size() && uses[end].edge() == uses[begin].edge()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles hang together by edges, and which of these surfaces are closed.
+// Connected surfaces of triangles, and which of them are closed.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@
 
 namespace earthshine::radiosity {
 
-// Triangles that hang together by edges (alike corners to the last bit), by the first of them;
-// `closed` says of that one whether every edge is used equally often both ways. Sheets and glass
-// are no part of any such surface: each of their triangles is a part of its own, which is open.
+// Triangles connected by edges (exactly equal vertices), identified by their first triangle.
+// `closed` of that triangle: every edge of the part is used equally often in both directions. Each
+// triangle of a sheet or of glass is a separate open part.
 struct ClosedParts {
-  // An edge that is used once more one way than the other: this way.
+  // An edge used more often in this direction than in the other.
   struct RimEdge {
     std::uint32_t part, from, to;  // vertices
   };
@@ -23,11 +23,11 @@ struct ClosedParts {
   std::vector<char> closed;
   std::vector<RimEdge> rims;  // by part
 };
-// left_out: by object, triangles that are taken as sheets are; empty: none.
+// left_out: triangles of these objects are treated like sheets; empty: none.
 [[nodiscard]] ClosedParts find_closed_parts(const scenes::Scene& scene,
                                             const std::vector<char>& left_out = {});
 
-// The triangles of the parts that keep(part) says yes to, part by part, each in ascending order.
+// The triangles of the parts for which keep(part) is true, part by part, in ascending order.
 template <class Keep>
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> triangles_by_part(const ClosedParts& parts,
                                                                         const Keep& keep) {
@@ -40,13 +40,13 @@ template <class Keep>
   return all;
 }
 
-// Surfaces that are closed but for a hole that another surface stops up: a block without a bottom
-// on a floor. Models leave out what nobody sees.
+// Surfaces that are closed except for a hole on another surface, such as a block without a bottom
+// on a floor: models omit invisible faces.
 
-// By part the triangles, three corners each, that close it: for open parts whose rim lies in one
-// plane, of which the part itself sticks out, and all around, corners and middles of edges, on
-// opaque one-sided triangles of other parts that face the hole, within a millionth of the scene's
-// size.
+// For each such part the closing triangles, three corners each. Conditions: the rim is planar, the
+// part lies on one side of it, and all around, at vertices and middles of edges, the rim lies
+// within a millionth of the scene's size on opaque one-sided triangles of other parts that face the
+// hole.
 [[nodiscard]] std::map<std::uint32_t, std::vector<Vec3>> find_stoppers(const scenes::Scene& scene,
                                                                        const ClosedParts& parts);
 

@@ -18,7 +18,7 @@ using scenes::Corners;
 
 double cross(const PlanePoint& u, const PlanePoint& v) { return u.x * v.y - u.y * v.x; }
 
-// The points where a triangle meets a plane: two, or none.
+// The two points where a triangle's border crosses a plane, or none.
 std::optional<std::array<Vec3, 2>> meeting(const Corners& wall, const Vec3& corner,
                                            const Vec3& normal, bool both_sides, double touch_m) {
   const std::array<Vec3, 3> p{wall.a, wall.b, wall.c};
@@ -58,7 +58,7 @@ class WallFinder {
     const Vec3 centre = scene_.vertices.empty() ? Vec3(0.0) : scene_.vertices.front();
     for (std::uint32_t t = 0; t < scene_.triangles.size(); ++t) {
       const std::uint32_t facet = patches_.of_triangle[t];
-      // Clusters do not look at each other.
+      // Visibility between a cluster's cells is not needed.
       const bool apart = !patches_.facets[facet].is_cluster();
       any = any || apart;
       const auto [a, b, c] = scenes::corners_of(scene_, t).seen_from(centre);
@@ -106,7 +106,7 @@ class WallFinder {
     return {glm::dot(glm::cross(d, facet.b), n) / size, glm::dot(glm::cross(facet.a, d), n) / size};
   }
 
-  // To the triangle of the facet; false where nothing is left within the facet.
+  // Clips the trace to the facet's triangle; false if nothing remains.
   bool clip(const Facet& facet, const Corners& ground, double touch_m, Trace& trace) const {
     std::array<PlanePoint, 3> p{in_plane(facet, ground.a), in_plane(facet, ground.b),
                                 in_plane(facet, ground.c)};
@@ -115,7 +115,7 @@ class WallFinder {
     for (std::size_t k = 0; k < 3; ++k) {
       const PlanePoint edge = p[(k + 1) % 3] - p[k];
       const double at = cross(edge, trace.from - p[k]), change = cross(edge, way);
-      // In units of twice the facet's area: as far outside as rounding puts what is on the edge.
+      // Share of twice the facet's area: rounding tolerance for points on the edge.
       constexpr double rounding = 1e-9;
       if (std::abs(change) < rounding) {
         if (at < -rounding) return false;
@@ -135,7 +135,7 @@ class WallFinder {
 
   [[nodiscard]] static bool along_edge(const Facet& facet, double touch_m, const Trace& trace) {
     const double area = glm::length(glm::cross(facet.a, facet.b));
-    // Heights over an edge of that length.
+    // Heights above an edge of this length.
     const auto near = [&](double from, double to, double edge_m) {
       return std::max(std::abs(from), std::abs(to)) * area / edge_m <= 2.0 * touch_m;
     };
@@ -146,7 +146,7 @@ class WallFinder {
     return near(1.0 - p.x - p.y, 1.0 - q.x - q.y, glm::length(facet.b - facet.a));
   }
 
-  // Which of the one-sided walls are of closed bodies.
+  // Marks the one-sided walls of closed bodies.
   void mark_bodies() {
     if (of_bodies_.empty()) return;
     const ClosedParts parts = find_closed_parts(scene_);
@@ -163,7 +163,7 @@ class WallFinder {
     }
   }
 
-  // Pieces of one line that touch become one.
+  // Joins collinear traces that touch.
   void join_pieces(std::size_t f) {
     std::vector<Trace>& traces = by_facet_[f];
     if (traces.size() < 2) return;
@@ -182,7 +182,7 @@ class WallFinder {
     std::vector<Piece> pieces;
     for (Trace& t : traces) {
       Vec3 front = t.front;
-      // Of what has no covered side it does not matter which is the front.
+      // Without a covered side the orientation is arbitrary.
       const bool turned = !t.of_body && (glm::dot(front, x) < -1e-9 ||
                                          (glm::dot(front, x) < 1e-9 && glm::dot(front, y) < 0.0));
       if (turned) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where walls stand on facets or pierce them.
+// Lines in which walls stand on facets or pierce them.
 #pragma once
 
 #include "radiosity/patches/parted_cell.h"
@@ -7,10 +7,9 @@
 
 namespace earthshine::radiosity {
 
-// Of opaque triangles that meet the plane of a facet within it, nearer to it than rays are lifted
-// off surfaces (SurfaceOffsets::contact), and reach beyond it on a side that has patches. What
-// only runs along the facet's edge is left out, as are clusters of small triangles. Pieces of one
-// line are joined.
+// Traces of opaque triangles that meet a facet's plane within the facet, to within the contact
+// distance (SurfaceOffsets::contact), and extend beyond it on a side with patches. Traces along the
+// facet's edge, and clusters of small triangles, are omitted. Collinear pieces are joined.
 [[nodiscard]] Traces find_wall_traces(const scenes::Scene& scene, const Patches& patches);
 
 }  // namespace earthshine::radiosity

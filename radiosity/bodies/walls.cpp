@@ -14,8 +14,8 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr double rounding = 1e-5;  // of the scene's extent; single precision is off by 1e-7
-// What finding walls takes at its peak, measured: edges sorted, then corners and their edges.
+constexpr double rounding = 1e-5;  // of the scene's extent; single-precision errors are 1e-7
+// Peak memory of the search, measured: sorted edges, then vertices with their edges.
 constexpr std::uint64_t bytes_per_triangle = 180;
 
 struct Ball {
@@ -23,7 +23,7 @@ struct Ball {
   double radius_m;
 };
 
-// Squared distance of a point from a triangle: from the plane where it lies over the triangle, else
+// Squared distance of a point from a triangle: from the plane if its projection is inside, else
 // from the nearest edge.
 double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = glm::cross(b - a, c - a);
@@ -46,7 +46,7 @@ double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3&
 }
 
 struct Wall {
-  std::vector<Vec3> corners;  // three a triangle
+  std::vector<Vec3> corners;  // three per triangle
   ClosedSurface surface;
 
   explicit Wall(std::vector<Vec3> all) : corners(std::move(all)), surface(corners) {}
@@ -61,8 +61,8 @@ struct Wall {
   }
 };
 
-// Objects that close by themselves and have none of these points in their box: they wind around
-// none, and no surface of several objects needs them.
+// Objects that are closed and have none of these points in their box: they enclose none of them,
+// and no other surface uses them.
 std::vector<char> around_nothing(const scenes::Scene& scene, const std::vector<Vec3>& points) {
   std::vector<char> found;
   for (const scenes::Object& object : scene.objects) {
@@ -89,7 +89,7 @@ std::vector<char> around_nothing(const scenes::Scene& scene, const std::vector<V
 
 class Walls {
  public:
-  // around: the middles of all balls that will be asked about.
+  // around: centres of all balls of later queries.
   Walls(const scenes::Scene& scene, const std::vector<Vec3>& around) {
     const std::vector<char> left_out = around_nothing(scene, around);
     std::uint64_t triangles = 0;
@@ -137,7 +137,7 @@ class Walls {
   std::vector<Wall> walls_;
 };
 
-// Of the ball around the lamp.
+// Radius of the lamp's bounding sphere.
 double radius_of(const scenes::Lamp& lamp) {
   const auto radius = scenes::row_of(lamp.kind).radius;
   return radius == nullptr ? 0.0 : radius(lamp);

@@ -1,26 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights that closed opaque walls keep from every camera.
+// Lights that closed opaque walls hide from every camera.
 //
-// A closed surface S of triangles (every edge used equally often both ways) winds a whole number of
-// times around a point that is not on it, and the same number of times around all points that a
-// path joins which does not meet S: the winding number changes only across S. So where it differs
-// between a light and a camera, every path between them meets S.
-// Light goes straight from surface to surface, and no way of it leads through a face that is not
-// glass: what meets a front goes on from the front, what meets a black back ends. By induction over
-// its bounces light stays on the side of S where it started, whatever else stands there, mirrors
-// included, and the camera is on the other: the light's part of the picture is 0, not just small.
+// A closed surface S of triangles (every edge used equally often in both directions) has an integer
+// winding number about each point off S, constant along every path that does not cross S. If it
+// differs between a light and a camera, every path between them crosses S. Light travels in
+// straight lines between surfaces and passes no face except glass: a front reflects it, a black
+// back absorbs it. By induction over bounces light stays on its side of S, whatever else is there,
+// including mirrors. The contribution of the light to the picture is exactly 0.
 //
-// Left in doubt, the light stays on:
-//   - S must be opaque: sheets (two sides), glass and mirrors are taken for holes, although no
-//   light
-//     passes a mirror, and a hole opens S
-//   - corners must agree to the last bit, as rays do not slip through edges that two triangles
-//   share
-//   - the whole lamp and the whole lens must lie on their side, and further from S than single
-//     precision is off: the ball around them must not meet S
-//   - each camera must have such a wall of its own or shared
-// The sky is at infinity, where every winding number is 0. Emitting surfaces are not looked at:
-// where they touch S their side is undecided.
+// Conservative conditions; otherwise the light stays on:
+//   - S is opaque: sheets (two sides), glass and mirrors count as holes, although no light passes a
+//     mirror, and a hole opens S
+//   - vertices agree exactly, because rays do not slip through shared edges
+//   - the lamp's and the lens's bounding balls, enlarged by the error of single precision, do not
+//     meet S
+//   - every camera has such a wall, of its own or shared
+// The sky is at infinity, where every winding number is 0. Emitting surfaces are not tested: where
+// they touch S their side is undefined.
 #pragma once
 
 #include <vector>
@@ -30,8 +26,8 @@
 
 namespace earthshine::radiosity {
 
-// cameras: those of the call; empty: all of the scene's. Throws base::Error (Work) where memory
-// does not hold it.
+// cameras: of the call; empty: all cameras of the scene. Throws base::Error (Work) if memory is
+// insufficient.
 [[nodiscard]] scenes::HiddenLights hidden_lights(const scenes::Scene& scene,
                                                  std::vector<const scenes::Camera*> cameras);
 

@@ -15,11 +15,11 @@
 namespace earthshine::radiosity {
 namespace {
 
-// Of an orbit, that share a patch's points: rays from one of them to neighbouring Suns go nearly
-// the same way.
+// Suns of an orbit that share a patch's points: rays from a point to neighbouring Suns are
+// coherent.
 constexpr std::size_t most_suns = 8;
 
-// Where the light of a patch's samples ends: all of it on the patch, or (SpecularPaths::kept) a share.
+// Where direct light on a patch ends: all on the patch, or the share SpecularPaths::kept.
 struct Landing {
   std::vector<double> area_m2;
   const std::vector<Rgb>& kept;  // per patch; empty: all
@@ -27,7 +27,7 @@ struct Landing {
   [[nodiscard]] Rgb flux(std::size_t patch, const Rgb& lx) const {
     return area_m2[patch] * (kept.empty() ? lx : kept[patch] * lx);
   }
-  // Of the luminance of such light.
+  // Share, in luminance, that ends on the patch.
   [[nodiscard]] double share(std::size_t patch, const Rgb& lx) const {
     const double all = base::luminance(lx);
     return kept.empty() || all <= 0.0 ? 1.0 : base::luminance(kept[patch] * lx) / all;
@@ -42,9 +42,9 @@ Rgb landed_as_sampled(const Sampled& sampled, const Landing& landing) {
   return landed;
 }
 
-// What lands is known twice: from the patches' samples, and as the flux less what was found to
-// escape. The mean of the two, weighted by inverse variance, sets the scale: in a closed room
-// nothing escapes and the flux rules exactly; on a small plate under an open sky the samples do.
+// The landed flux has two estimates: the patches' samples, and the emitted flux minus the escaped
+// flux. Their inverse-variance mean sets the scale. In a closed room nothing escapes and the
+// emitted flux is exact; for a small plate under an open sky the samples are more accurate.
 double landing_scale(const Sampled& sampled, const Landing& landing, double landed,
                      const SourceFlux& flux) {
   double landed_variance = 0.0;
@@ -57,13 +57,13 @@ double landing_scale(const Sampled& sampled, const Landing& landing, double land
   if (landed <= 0.0 || expected <= 0.0) return 1.0;
   const double expected_variance = std::pow(flux.expected_error_lm(), 2);
   const double both = landed_variance + expected_variance;
-  if (both <= 0.0) return expected / landed;  // both are exact: the flux is
+  if (both <= 0.0) return expected / landed;  // both are exact: uses the flux
   const double found = (landed * expected_variance + expected * landed_variance) / both;
   return std::min(found, all) / landed;
 }
 
-// Where nothing escapes, each channel lands as it was emitted: lamps of different colours that are
-// drawn by chance share one scale no more.
+// If nothing escapes, each channel lands as emitted: randomly selected lamps of different colours
+// have no common scale.
 Rgb channel_scales(const SourceFlux& flux, const Rgb& landed) {
   Rgb scale(flux.scale);
   if (flux.escaped_share + flux.back_share > 0.0) return scale;
@@ -83,10 +83,10 @@ struct Shares {
   }
 };
 
-// Follows a ray from a source as shadow rays come the other way: straight on through glass, off
-// flat mirrors once. What comes to a second one counts as met by a black back, as what ends within
-// a body of glass or where faces cover a patch does: no patch is lit by it. `weight` is what the ray carries in each
-// channel, of a source of many colours that of their mean.
+// Follows a ray from a source, reverse to shadow rays: straight through glass, and by one
+// reflection in a flat mirror. A ray at a second mirror, inside a glass body, or where faces cover
+// a patch counts as absorbed by a black back, because it lights no patch. `weight`: the ray's flux
+// per channel; a multicoloured source uses its mean colour.
 class SourceRays {
  public:
   SourceRays(const scenes::Scene& scene, const scenes::RayQuery& query, const Patches& patches,
@@ -144,7 +144,7 @@ class SourceRays {
   const OpenParts& open_;
 };
 
-// Shoots rays from a source of known flux to find what escapes and what falls on black backs.
+// Shoots rays from a source of known flux to estimate the escaped and black-back shares.
 void find_shares(const scenes::RayQuery& query, const SourceRays& source_rays, const Emit& emit,
                  std::uint64_t key, int rays, std::uint64_t seed, SourceFlux& flux) {
   const double emitted = base::luminance(flux.emitted_lm);
@@ -189,7 +189,7 @@ class DirectStage {
     light_.illuminance_lx.assign((own_.end - own_.begin) * light_.columns, 0.0);
   }
 
-  // Sources whose flux is not known (the sky's): taken as sampled.
+  // Sources of unknown flux (the sky): as sampled.
   void add(std::span<const Source> sources) { store(sample(sources), sources, Rgb(1.0)); }
 
   void add(const Source& source, SourceFlux flux, const Emit& emit) {
@@ -209,7 +209,7 @@ class DirectStage {
     store(std::move(sampled), {&source, 1}, scale);
   }
 
-  // One of the `parts` values that each patch has.
+  // Stores one of the `parts` values of each patch.
   void store_part(const std::vector<Rgb>& illuminance, std::size_t parts, std::size_t part,
                   std::size_t group) {
     for (std::size_t row = 0; row < own_.end - own_.begin; ++row) {
@@ -223,7 +223,7 @@ class DirectStage {
                           light_.shadow_rays, factors_.shares.hears());
   }
 
-  // What the first rank has sampled.
+  // Stores the samples that the first rank has.
   void store(Sampled sampled, std::span<const Source> sources, const Rgb& scale) {
     factors_.shares.tell_own(sampled.illuminance_lx.data(), sources.size());
     for (std::size_t row = 0; row < own_.end - own_.begin; ++row) {

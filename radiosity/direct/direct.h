@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Direct illuminance E0 of every patch from every source that is not carried by form factors: Sun,
-// Earth, lamps and small emitting surfaces, by shadowed sampling, one column per (light group,
-// channel).
+// Direct illuminance E0 of every patch from the sources without form factors: Sun, Earth, lamps and
+// small emitting surfaces. Shadowed samples, one column per (light group, channel).
 #pragma once
 
 #include <array>
@@ -14,8 +13,8 @@
 
 namespace earthshine::radiosity {
 
-// What a source of known flux emits against where it was found to go. The explicit first bounce is
-// scaled by `scale` so that landed + on black backs + escaped = emitted.
+// Flux balance of a source of known flux. The direct illuminance is multiplied by `scale`, so that
+// landed + on black backs + escaped = emitted.
 struct SourceFlux {
   std::string name;
   std::size_t group = 0;
@@ -24,24 +23,24 @@ struct SourceFlux {
   double back_share = 0.0;       // absorbed by black back faces
   double share_std_error = 0.0;  // of escaped + black, binomial
   double scale = 1.0;            // applied to the patches' sampled illuminance
-  Rgb landed_lm{0.0};            // on patches, scaled; never more luminance than emitted
+  Rgb landed_lm{0.0};            // on patches, scaled; its luminance is at most the emitted one
 
-  // What the rays shot from the source found to land, lm, and the standard error by luminance.
+  // Landed flux by the rays from the source, lm, and its standard error in luminance.
   [[nodiscard]] Rgb expected_lm() const { return emitted_lm * (1.0 - escaped_share - back_share); }
   [[nodiscard]] double expected_error_lm() const {
     return base::luminance(emitted_lm) * share_std_error;
   }
-  // Whether landed_lm is what those rays leave, but for their noise: six standard errors.
+  // Whether landed_lm agrees with those rays to within six standard errors.
   [[nodiscard]] bool is_accounted_for() const;
 
-  // What did not land, by where the rays shot from the source went. In luminance never negative; of
-  // many lamps of different colours in one cluster, a channel may be, by the noise of their choice.
-  // Flux that is not accounted for is in none of the two.
+  // Flux that did not land, divided by the results of the rays from the source. The luminance is
+  // never negative; in a cluster of lamps of different colours one channel may be, by the noise of
+  // their selection. Flux that is not accounted for is in neither of the two.
   [[nodiscard]] Rgb escaped_lm() const;
   [[nodiscard]] Rgb lost_lm() const;  // on black backs
 };
 
-// What finding the light of one kind of source took.
+// Cost of the light of one kind of source.
 struct SourceCost {
   std::uint64_t rays = 0;
   double seconds = 0.0;  // wall
@@ -57,13 +56,13 @@ struct DirectLight {
 
 struct DirectOptions {
   int points_per_patch = 16;  // receiver points for distant sources; 16 times more near a source
-  int flux_rays = 1 << 16;    // shot from each lamp to find what escapes
+  int flux_rays = 1 << 16;    // from each lamp, to estimate the escaped flux
   std::uint64_t seed = 0;
 };
 
-// Per patch the mean over factors.open, what no body covers. factors.sky_illuminance is taken for
-// the Earth where it is wide (Effects::earth_by_gather). Of ranks that divide the factors each has
-// the light of its own rows, and the first alone what is said of sources.
+// Per patch the mean over its open part (factors.open). The Earth uses factors.sky_illuminance if
+// it is wide (Effects::earth_by_gather). Ranks that divide the factors each return the light of
+// their own rows; only the first returns the data of the sources.
 [[nodiscard]] DirectLight direct_light(const scenes::World& world, const Patches& patches,
                                        const FormFactors& factors, const DirectOptions& options);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lambert's formula: the share of a point's view that a polygon fills, cosine-weighted,
+// Lambert's formula: cosine-weighted share of a point's view that a polygon covers,
 //   f = 1/(2 pi) sum over edges of angle_k  n . (a_k x b_k) / |a_k x b_k|,
-// a_k, b_k from the point to the ends of edge k, angle_k between them. Exact; the contour may be
-// any closed polygon or a set of them, each edge counted with its direction.
+// a_k, b_k from the point to the ends of edge k, angle_k between them. Exact for any closed
+// polygon, or a set of polygons with oriented edges.
 #pragma once
 
 #include <array>
@@ -12,8 +12,9 @@
 
 namespace earthshine::radiosity {
 
-// atan2(y, x) for y >= 0, to a few units of rounding and without branches, so that the compiler can
-// do four at once. Rational approximation: Moshier, Cephes, atan.c (range reduced to tan(pi/8)).
+// atan2(y, x) for y >= 0, accurate to a few rounding units and without branches, so that the
+// compiler can vectorise it. Rational approximation: Moshier, Cephes, atan.c (range reduced to
+// tan(pi/8)).
 [[nodiscard]] inline double angle_of(double y, double x) {
   const double flat = std::abs(x);
   const double low = y < flat ? y : flat;
@@ -40,20 +41,20 @@ namespace earthshine::radiosity {
   return x < 0.0 ? base::pi - quarter : quarter;
 }
 
-// Edges gathered for one point, worked off several at a time.
+// Collects edges for one point and evaluates several at a time.
 class LambertSum {
  public:
-  // The receiver's unit normal.
+  // normal: unit normal of the receiver.
   explicit LambertSum(const Vec3& normal) : normal_(normal) {}
 
-  // An edge from a to b, both seen from the point.
+  // Adds an edge from a to b, both relative to the point.
   void add(const Vec3& a, const Vec3& b) {
     if (count_ == width) work_off();
     ax_[count_] = a.x, ay_[count_] = a.y, az_[count_] = a.z;
     bx_[count_] = b.x, by_[count_] = b.y, bz_[count_] = b.z;
     ++count_;
   }
-  // f, positive for contours that run counter-clockwise about a normal facing the point.
+  // f, positive for contours that are counter-clockwise about a normal toward the point.
   [[nodiscard]] double share() {
     work_off();
     return -sum_ / (2.0 * base::pi);
@@ -63,7 +64,7 @@ class LambertSum {
   static constexpr std::size_t width = 8, step = 4;
 
   void work_off() {
-    // Empty places are edges of no length: their cross product is 0, and so is their share.
+    // Pads with edges of length 0: their cross product, and thus their share, is 0.
     const std::size_t full = (count_ + step - 1) / step * step;
     for (std::size_t k = count_; k < full; ++k) {
       ax_[k] = bx_[k] = 1.0;

@@ -14,11 +14,10 @@ namespace {
 
 using scenes::LightSample;
 
-// Per point wanted of a patch that a body covers in part: a sliver left open is not looked for
-// longer.
+// Limit of draws per wanted point of a partly covered patch, for patches with only a sliver open.
 constexpr int most_draws = 64;
 
-// Adds up shadowed samples of some sources.
+// Sums shadowed samples of some sources.
 class Receiver {
  public:
   Receiver(const scenes::RayQuery& query, std::size_t sources, int points)
@@ -40,7 +39,7 @@ class Receiver {
     shadows_.trace([this](const Arriving& light, const Rgb& share) { take(light, share); });
   }
   [[nodiscard]] const Rgb& sum(std::size_t source) const { return sum_[source]; }
-  // Of the points' luminance-weighted values.
+  // Sum over points of squared luminance-weighted values.
   [[nodiscard]] double sum_of_squares(std::size_t source) const {
     double squares = 0.0;
     for (std::size_t k = source; k < by_point_.size(); k += sources_) {
@@ -68,8 +67,7 @@ class Receiver {
   std::vector<double> by_point_;  // point * sources + source
 };
 
-// Near a source the illuminance varies across the patch as 1/r^2, and more points are worth their
-// rays.
+// Near a source the illuminance varies over the patch as 1/r^2 and needs more points.
 int points_for(const Source& source, const Patches& patches, std::uint32_t patch) {
   if (!source.distance_m) return source.points;
   const double ratio =
@@ -87,7 +85,7 @@ void add_samples(const Source& source, const Vec3& point, const Vec3& normal, do
   }
 }
 
-// A flat patch that a Sun is below the horizon of, straight and by mirrors.
+// Whether a Sun is below the horizon of a flat patch, directly and in all mirrors.
 bool sees_nothing_of(const Source& source, std::span<const scenes::FlatMirror> mirrors,
                      const Patches& patches, std::uint32_t patch) {
   if (!source.disc || patches.is_several(patch)) return false;

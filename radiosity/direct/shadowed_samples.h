@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Illuminance of every patch from a source, or from several that share the patch's points, by
+// Illuminance of every patch from a source, or from several sources that share the patch's points:
 // shadow rays from points on the patch to points on the source.
 #pragma once
 
@@ -16,29 +16,29 @@
 
 namespace earthshine::radiosity {
 
-// A disc of the sky and its angular radius; the cosine between its middle and a normal below which
-// none of it is above the horizon.
+// A disc of the sky with its angular radius. lowest_cosine: the cosine between its middle and a
+// normal below which it is completely below the horizon.
 struct Disc {
   Vec3 direction;
   double angle_rad, lowest_cosine;
 };
 
-// A source as the patches see it.
+// A source for the patches.
 struct Source {
   std::uint64_t key = 0;  // of its random numbers
   std::size_t group = 0;
   int points = 16;       // receiver points per patch
-  int near_factor = 64;  // how many times as many near the source
-  bool has_size = true;  // else all of its samples at a point are the same
+  int near_factor = 64;  // factor near the source
+  bool has_size = true;  // else all of its samples at a point are equal
   std::function<scenes::LightSample(const Vec3& point, double u, double v)> sample;
-  // In place of `sample`: many lamps as one. Adds those that get a shadow ray from a surface.
+  // Replaces `sample` for many lamps in one source. Adds the samples that get a shadow ray.
   std::function<void(const Vec3& point, const Vec3& normal, double u, double v,
                      std::vector<scenes::LightSample>& samples)>
       cluster;
   std::function<double(const Vec3& point)> distance_m;  // empty for the sky
   std::optional<Disc> disc;                             // of a Sun
 
-  // Whether a surface of that normal cannot get any of it straight.
+  // Whether the disc is completely below the horizon of a surface with this normal.
   [[nodiscard]] bool is_below_horizon(const Vec3& normal) const {
     return disc && glm::dot(disc->direction, normal) < disc->lowest_cosine;
   }
@@ -46,18 +46,18 @@ struct Source {
 
 struct Sampled {
   std::vector<Rgb> illuminance_lx;  // patch * sources + source
-  std::vector<double> variance;     // of its luminance-weighted value, as if the points were random
+  std::vector<double> variance;     // of its luminance-weighted mean, as for random points
 };
 
-// The source's samples at a surface, straight and by flat mirrors, in place of what `samples` held.
+// Replaces `samples` by the source's samples at a surface, direct and by flat mirrors.
 void take_samples(const Source& source, std::span<const scenes::FlatMirror> mirrors,
                   const Vec3& point, const Vec3& normal, double u, double v,
                   std::vector<scenes::LightSample>& samples);
 
-// Owen-Sobol in four dimensions (point of the patch, point of the source), keyed by patch and
-// first source. Points that bodies cover are left out, and the next of the sequence taken; a wholly
-// covered patch gets nothing. Adds the rays cast to `rays`. sources: of several, each in the sky,
-// so that they want equally many points. hears: the rank that has them all.
+// Owen-Sobol points in four dimensions (on the patch, on the source), keyed by patch and first
+// source. Covered points are skipped for the next of the sequence; a completely covered patch gets
+// 0. Adds the number of rays to `rays`. sources: several only if all are in the sky, with equal
+// numbers of points. hears: the rank that gets all results.
 [[nodiscard]] Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches,
                                      const OpenParts& open, std::span<const Source> sources,
                                      std::uint64_t seed, std::uint64_t& rays,

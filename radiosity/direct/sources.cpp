@@ -36,7 +36,7 @@ LightSource sun_source(const scenes::Scene& scene, std::size_t group, int points
   return {{}, std::move(source), Rgb(0.0), {}};
 }
 
-// The whole disc of a Sun that nothing in the sky hides.
+// The whole disc of an unobstructed Sun.
 LightSource free_sun_source(const scenes::Sun& sun, std::uint64_t key, std::size_t group,
                             int points) {
   const double radius = base::radians(sun.angular_radius_deg);
@@ -88,7 +88,7 @@ LightSource lamp_source(const scenes::Lamp& lamp, std::uint64_t key, std::size_t
           }};
 }
 
-// One direction, and no flux of its own.
+// A single direction; its flux is unknown.
 LightSource distant_source(const scenes::Lamp& lamp, std::uint64_t key, std::size_t group,
                            int points) {
   Source source;
@@ -123,7 +123,7 @@ struct Cluster {
   const scenes::Scene& scene;
   std::vector<std::size_t> lamps;
   scenes::LightTree tree;
-  std::vector<double> flux_to;  // luminous, running sum
+  std::vector<double> flux_to;  // cumulative luminous flux
 
   [[nodiscard]] const scenes::Lamp& lamp(std::size_t k) const { return scene.lamps[lamps[k]]; }
 
@@ -134,7 +134,7 @@ struct Cluster {
     receiver.point = point;
     receiver.normal = normal;
     tree.choose(receiver, u, smallest_share, chosen);
-    // u says already which lamps these are: where on them needs numbers that do not depend on it.
+    // u has selected the lamps; positions on them need independent numbers.
     const base::Key key(std::bit_cast<std::uint64_t>(u), base::Stream::DirectLight,
                         std::bit_cast<std::uint64_t>(v));
     for (const auto& [k, weight] : chosen) {
@@ -168,7 +168,7 @@ struct Cluster {
 constexpr double wide_share = 0.05;  // of all surface area
 constexpr double stands_out = 2.0;   // times the mean illuminance
 
-// Both sides of sheets.
+// Includes both sides of sheets.
 std::vector<double> areas_by_material(const scenes::Scene& scene) {
   std::vector<double> area(scene.materials.size(), 0.0);
   for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
@@ -179,7 +179,7 @@ std::vector<double> areas_by_material(const scenes::Scene& scene) {
   return area;
 }
 
-// 0 where nothing absorbs.
+// 0 if nothing absorbs.
 double mean_illuminance(const scenes::Scene& scene, const std::vector<double>& area) {
   const std::vector<Rgb> spread = scenes::bihemispherical_albedos(scene);
   double emitted = 0.0, absorbing = 0.0;
@@ -198,7 +198,7 @@ std::vector<LightSource> find_sources(const scenes::World& world, int points) {
   using Kind = scenes::ShiningLight::Kind;
   const scenes::Scene& scene = world.scene;
   const std::vector<scenes::ShiningLight> lights = scenes::shining_lights(world);
-  // Keys count what shines: one that is off does not change the others' samples.
+  // Keys number all lights, so that switching one off does not change the samples of the others.
   std::vector<std::vector<std::size_t>> lamps(world.groups.count());
   std::vector<std::uint64_t> key(scene.lamps.size(), 0);
   std::uint64_t next_key = 16;

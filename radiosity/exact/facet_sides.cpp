@@ -9,8 +9,8 @@ namespace {
 
 constexpr Rectangle whole_facet{0.0, 1.0, 0.0, 1.0};
 
-// Part of a facet, counter-clockwise about its front. About an origin near it: the corners of
-// Patches::corners would lose digits far out.
+// Part of a facet, counter-clockwise about its front, relative to a nearby origin: the corners of
+// Patches::corners would lose digits far from the scene's origin.
 std::array<Vec3, 4> corners(const Facet& facet, const Vec3& origin, const Rectangle& part) {
   const Vec3 corner = facet.corner - origin;
   const auto at = [&](double s, double t) {
@@ -84,7 +84,7 @@ FacetSides::FacetSides(const Patches& patches) {
 
 void FacetSides::find_hiding() {
   for (std::uint32_t f = 0; f < blockers.size(); ++f) {
-    // A facet with the whole scene on one side is part of its hull: nothing passes behind it.
+    // A facet with the whole scene on one side is part of its hull and occludes nothing.
     const Plane plane{blockers[f][0], blockers[f].normal};
     bool above = false, below = false;
     for (std::size_t g = 0; g < blockers.size() && !(above && below); ++g) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sides of facets as polygons about a local origin: what the exact form factors work on.
+// Sides of facets as polygons relative to a local origin, for the exact form factors.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ struct Side {
   Box box;
 };
 
-// Gauss points of 2, 3 and 4 per direction, as area_order asks for.
+// Gauss points per direction, from 2 to 4; see area_order.
 inline constexpr int least_order = 2, most_order = 4;
 
 struct PatchShape {
@@ -46,8 +46,8 @@ struct PatchShape {
   std::array<std::uint32_t, most_order - least_order + 2> first_point;
 };
 
-// Coordinates are taken about the middle of the scene, so that a scene far from its origin loses
-// nothing more than its file did.
+// Coordinates are relative to the middle of the scene, so that a scene far from its origin loses no
+// further accuracy.
 struct FacetSides {
   explicit FacetSides(const Patches& patches);
 
@@ -57,9 +57,9 @@ struct FacetSides {
   PointColumns points;
   std::vector<ConvexPolygon> blockers;  // per facet
   std::vector<Box> blocker_box;
-  std::vector<std::uint32_t> hiding;  // facets that can hide anything: not those around the scene
+  std::vector<std::uint32_t> hiding;  // facets that can occlude: not those of the scene's hull
   ConvexBodies bodies;                // of the facets
-  double margin_m = 0.0;              // heights below it are rounding
+  double margin_m = 0.0;              // smaller heights are rounding errors
 
   [[nodiscard]] PointView points_of(const PatchShape& shape, int order) const {
     const auto k = static_cast<std::size_t>(order - least_order);

@@ -40,7 +40,7 @@ void check(const scenes::Scene& scene, const Patches& patches) {
 
 constexpr std::uint32_t gap_rays = 1U << 16;
 
-// Where the rays of a patch end that meet no patch. Those from covered points do not count.
+// Rays of a patch that hit no patch. Rays from covered points are not counted.
 struct Open {
   int sky = 0, black = 0, all = 0;
   Rgb radiance{0.0};  // sum over the rays to the sky
@@ -53,7 +53,7 @@ Open cast_open(const scenes::RayQuery& query, const Patches& patches, std::uint3
   const bool is_whole = covers.empty() || covers[patch].is_whole();
   const base::SobolOwen4 sobol(base::Key(seed, base::Stream::ExactOpening, patch));
   const base::Frame3 frame = base::frame_around(patches.normal(patch));
-  // Off the patch's edges, where rounding could put the origin behind a neighbour.
+  // Inset from the patch's edges, where rounding could put the origin behind a neighbour.
   const auto inset = [](float x) { return 1e-4 + (1.0 - 2e-4) * double(x); };
   scenes::RayPacket packet;
   scenes::HitPacket hits;
@@ -80,7 +80,7 @@ Open cast_open(const scenes::RayQuery& query, const Patches& patches, std::uint3
       }
       const std::uint32_t met =
           patches.find(hits.triangle[k], double(hits.u[k]), double(hits.v[k]), hits.front[k] != 0);
-      // A wholly covered patch takes nothing.
+      // A completely covered patch receives nothing.
       if (met == no_patch || (!covers.empty() && covers[met].open <= 0.0)) ++open.black;
     }
   }
@@ -132,21 +132,21 @@ double landed_share(const FormFactors& factors, std::size_t i) {
   return landed;
 }
 
-// How far the sum of a row may be from 1 by errors alone: rounding to single precision and the
-// contours' and area rules', and what was estimated for partly hidden pairs, whose errors often
-// have one sign (found: up to a dozen times the root of their squares' sum).
+// Largest credible defect of a row sum: rounding to single precision, errors of contour and area
+// rules, and estimated errors of partly hidden pairs, which often have one sign (observed: up to a
+// dozen times the root of their sum of squares).
 double credible_defect(double row_square_error) {
   return 1e-6 + 20.0 * std::sqrt(row_square_error);
 }
 
-// What a row leaves open is what rays find open, or one of the two is wrong: the factors' faults
-// would else end in the sky's share, where no row sum shows them.
+// 1 - row sum must agree with the open share found by rays. Otherwise errors of factors would end
+// in the sky's share, where no row sum shows them.
 void check_row(std::size_t i, double landed, const Open& open, double credible,
                ExactReport& report) {
   constexpr double errors_apart = 6.0;
   if (open.all == 0) return;
   const double share = double(open.sky + open.black) / open.all;
-  // Binomial, and never less than one ray gone the other way.
+  // Binomial, but at least one ray.
   const double error = std::max(std::sqrt(share * (1.0 - share) / open.all), 1.0 / open.all);
   const double apart = std::abs(1.0 - landed - share);
   if (apart <= errors_apart * error + credible) return;
@@ -154,7 +154,7 @@ void check_row(std::size_t i, double landed, const Open& open, double credible,
   ++report.disagreeing_rows;
 }
 
-// Shares of sky and black backs, and the scale that makes the row close to the last digit.
+// Sets the shares of sky and black backs, and the scale that closes the row exactly.
 void close_row(FormFactors& factors, std::size_t i, const Open& open, double credible,
                ExactReport& report) {
   if (!factors.open.share.empty() && factors.open.share[i] <= 0.0) {
@@ -166,7 +166,7 @@ void close_row(FormFactors& factors, std::size_t i, const Open& open, double cre
   check_row(i, landed, open, credible, report);
   double rest = 0.0;
   if (landed == 0.0) {
-    rest = 1.0;  // sees no patch, whatever single rays say
+    rest = 1.0;  // sees no patch; overrides single rays
   } else if (open_rays == 0 && defect <= credible) {
     ++report.closed_rows;
     report.max_closed_defect = std::max(report.max_closed_defect, defect);
@@ -176,20 +176,20 @@ void close_row(FormFactors& factors, std::size_t i, const Open& open, double cre
   } else {
     rest = 1.0 - landed;
   }
-  // Where no ray found the way out, it is a gap between surfaces: to the sky.
+  // Without an open ray the remainder is a gap between surfaces: to the sky.
   const double to_sky = open_rays > 0 ? double(open.sky) / open_rays : 1.0;
-  // Binomial, and never less than one ray gone the other way.
+  // Binomial, but at least one ray.
   const double n = std::max(1, open_rays);
   report.split_std_error[i] = rest * std::max(std::sqrt(to_sky * (1.0 - to_sky) / n), 1.0 / n);
   factors.sky[i] = factors.escape[i] = rest * to_sky;
   factors.black[i] = factors.lost[i] = rest - factors.sky[i];
   factors.row_scale[i] = landed > 0.0 ? (1.0 - rest) / landed : 1.0;
-  // Of the share of the sky, which is known, and not of the rays that happened to find it.
+  // Uses the known share of the sky, not the number of rays that hit it.
   if (open.sky > 0)
     factors.sky_illuminance[i] = open.radiance * (base::pi * factors.sky[i] / open.sky);
 }
 
-// Empty: nothing is covered.
+// Empty result: nothing is covered.
 std::vector<PatchCover> find_cover(const scenes::Scene& scene, const scenes::RayQuery& query,
                                    const Patches& patches, const FacetSides& sides,
                                    OpenParts& parts) {
@@ -243,7 +243,7 @@ ExactFormFactors exact_form_factors(const scenes::Scene& scene, const scenes::Ra
                           sky, factors.open.bodies.get(), covers);
     };
     look_out(rays);
-    // Open by more than errors can be, through a gap that few rays find.
+    // Open by more than the credible error, through a gap that few rays find.
     const bool found_none = open[i].sky + open[i].black == 0;
     if (found_none && 1.0 - landed_share(factors, i) > credible[i] && rays < gap_rays) {
       look_out(gap_rays);

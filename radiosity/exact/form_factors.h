@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Form factors without rays, for up to some thousand patches and whole facets: analytic where a
-// pair sees each other wholly (polygon_factor.h), shadows cut exactly and integrated to a tolerance
-// where it does not (hidden_factor.h).
+// Form factors without rays, for up to some thousand patches and for whole facets: analytic for
+// unoccluded pairs (polygon_factor.h), exact shadows integrated to a tolerance for partly occluded
+// pairs (hidden_factor.h).
 //
 //   F_ij = row_scale_i hits_ij,  hits_ij the computed F_ij as float,  column_scale = kept = 1
-//   sum_j F_ij + F_i,sky + F_i,black = 1 to the last digits
+//   sum_j F_ij + F_i,sky + F_i,black = 1 to rounding
 //
-// F_ij is the mean over what no body covers of patch i (factors.open), as in the factors by rays.
-// What a row leaves open, 1 - sum_j F_ij, is split between the sky and black backs by rays of the
-// patch; a row none of whose rays ends on either and whose sum is 1 within its errors is closed and
-// scaled to 1. Every defect that was scaled away is in the report.
+// F_ij is the mean over the open part of patch i (factors.open), as for factors by rays. Rays of
+// the patch divide the open share, 1 - sum_j F_ij, between the sky and black backs. A row without
+// such rays whose sum is 1 within its errors is closed and scaled to 1. The report has every defect
+// that was removed by scaling.
 #pragma once
 
 #include <vector>
@@ -26,21 +26,20 @@ struct ExactOptions {
 };
 
 struct ExactReport {
-  std::uint64_t pairs = 0;  // unordered, and their kinds below
+  std::uint64_t pairs = 0;  // unordered; their kinds below
   PairCounts counts;
-  double estimated_error = 0.0;  // greatest over rows of sqrt(sum_j dF_ij^2), estimated
-  // Per patch, of F_i,sky and F_i,black alike: what the rays leave open about the split between
-  // them.
+  double estimated_error = 0.0;  // largest over rows of sqrt(sum_j dF_ij^2), estimated
+  // Per patch, for F_i,sky and F_i,black: standard error of the division between them by rays.
   std::vector<double> split_std_error;
-  std::vector<double> open_std_error;  // per patch, of factors.open.share, which points find
+  std::vector<double> open_std_error;  // per patch, of factors.open.share, estimated by points
   std::size_t closed_rows = 0;
-  double max_closed_defect = 0.0;  // greatest |1 - sum_j F_ij| of closed rows before scaling
-  // Per patch: how far 1 - sum_j F_ij is from the share of the patch's rays that ends on the sky or
-  // on black backs, where that is more than six standard errors of both; else 0.
+  double max_closed_defect = 0.0;  // largest |1 - sum_j F_ij| of closed rows before scaling
+  // Per patch: difference of 1 - sum_j F_ij from the share of rays that end on the sky or on black
+  // backs, if it exceeds six standard errors; else 0.
   std::vector<double> disagreement;
   std::size_t disagreeing_rows = 0;
   std::size_t overfull_rows = 0;  // open rows with sum_j F_ij > 1, scaled to 1
-  double max_overfull = 0.0;      // the greatest sum_j F_ij - 1 among them
+  double max_overfull = 0.0;      // largest sum_j F_ij - 1 of these rows
 };
 
 struct ExactFormFactors {
@@ -48,8 +47,8 @@ struct ExactFormFactors {
   ExactReport report;
 };
 
-// Memory: 4 n^2 bytes for the pairs and 8 for each nonzero. The same bytes for any number of
-// threads. Throws base::Error (Input) for scenes with mirrors or glass, which this cannot follow,
+// Memory: 4 n^2 bytes for the pairs and 8 per nonzero. The result does not depend on the number of
+// threads. Throws base::Error (Input) for scenes with mirrors or glass, which are not supported,
 // and for more than most_exact_patches patches.
 inline constexpr std::size_t most_exact_patches = 30000;
 [[nodiscard]] ExactFormFactors exact_form_factors(const scenes::Scene& scene,

@@ -10,16 +10,16 @@ namespace earthshine::radiosity {
 namespace {
 
 constexpr int most_points = 20000;
-constexpr int deepest = 20;  // halvings of one cell
+constexpr int deepest = 20;  // bisections of one cell
 constexpr double corner_inset = 1e-6;
-// The 3-point rule's error across a kink, over what the four corners are off the parabola through
-// its points: at most about this (worked out for kinks along one side).
+// Error of the 3-point rule across a kink, relative to the deviation of the four corners from the
+// parabola through its points: an approximate upper bound (derived for kinks parallel to a side).
 constexpr double error_per_corner = 0.05;
-// Weights of the three Gauss points that carry a parabola to the border beside the first of them.
+// Weights of the three Gauss points that extrapolate a parabola to the border next to the first.
 constexpr double to_border[3] = {1.4788305577012361, -2.0 / 3.0, 0.18783610896543051};
 
-// Shadows move across the target by (distance to it) / (distance from the receiver) times the
-// point's own way: the receiver is the one whose points see them move less, for its size.
+// A shadow moves over the target by (distance to target) / (distance to receiver) times the point's
+// displacement: the receiver is the polygon for which this is smaller relative to its size.
 bool second_receives(const Ball& first, const Ball& second,
                      std::span<const Blocker* const> blockers) {
   Vec3 middle(0.0);
@@ -32,7 +32,7 @@ bool second_receives(const Ball& first, const Ball& second,
 
 }  // namespace
 
-// The integrand at (x, y) of a quad.
+// The integrand at (x, y) of a quadrilateral.
 double HiddenFactor::at(const Quad& quad, double x, double y) {
   clip_.cut(quad.corner + x * quad.ab + y * quad.ad + (x * y) * quad.twist);
   result_.any_hidden = result_.any_hidden || !clip_.wholly_visible();
@@ -58,8 +58,8 @@ void HiddenFactor::sample(Cell& cell) {
     bend_x += rule.weight[k] * std::abs(g[0][k] - 2.0 * g[1][k] + g[2][k]);
     bend_y += rule.weight[k] * std::abs(g[k][0] - 2.0 * g[k][1] + g[k][2]);
   }
-  // Off the biquadratic through the nine points, at the corners, but for a hair: on the border of
-  // a patch, in the planes of faces that stand there, shadows change at one blow.
+  // Deviation from the biquadratic through the nine points, at the corners, slightly inset: on a
+  // patch's border, in the planes of adjacent faces, shadows change discontinuously.
   const double inset_x = corner_inset * width, inset_y = corner_inset * height;
   double off[2][2];
   double off_sum = 0.0;
@@ -109,7 +109,7 @@ void HiddenFactor::refine() {
   }
 }
 
-// The sooner nothing is left the better, and few large cuts leave fewer parts than many small ones.
+// Early complete occlusion saves work, and few large cuts leave fewer parts than many small ones.
 void HiddenFactor::put_largest_shadow_first(const Vec3& from, double margin_m) {
   shadows_.clear();
   for (std::size_t k = 0; k < blockers_.size(); ++k) {
@@ -140,7 +140,7 @@ void HiddenFactor::set_up(const ConvexPolygon& receiver, const ConvexPolygon& ta
   put_largest_shadow_first(frame.point(ball.centre), margin_m);
   clip_.set(frame, target_, blockers_, margin_m);
   normal_ = frame.direction(receiver.normal);
-  // Near the target only what is hidden is integrated: the rest, with its steep rise towards a
+  // Near the target only the hidden part is integrated: the rest, with its steep rise toward a
   // shared edge, is known exactly.
   clip_.cut(frame.point(ball.centre));
   const bool near = distance_m(target, ball.centre) < 3.0 * ball.radius;
@@ -167,7 +167,7 @@ HiddenExchange HiddenFactor::exchange(const ConvexPolygon& first, const ConvexPo
   tolerance_m2_ = tolerance_m2;
   result_ = {};
   set_up(receiver, target, blockers, margin_m);
-  // What no point of one saw, in a narrow gap along its border, may be wide in the other's eyes.
+  // A narrow gap at the border of one polygon may be wide as seen from the other one.
   if (!result_.any_visible || !result_.any_hidden) set_up(target, receiver, blockers, margin_m);
   if (!result_.any_visible) return result_;
   if (!result_.any_hidden) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Form factors between two flat polygons with others between them.
+// Form factors between two flat polygons with occluders between them.
 //
-// At a point of one, what it sees of the other is exact: shadows are cut off the target and
-// Lambert's formula is applied to what is left (or to what is hidden, taken off the factor without
-// blockers). Over the receiver the integrand is smooth but for kinks where a shadow's edge passes a
-// corner of the target: 3 x 3 Gauss points in cells, the cell of the largest estimated error split
-// across its stronger bend until the estimates' sum is below the tolerance. Where kinks run along
-// the receiver's sides, as between right-angled bodies, cells are split at the kinks themselves
-// (shadow_clip.h) and what is left is smooth.
+// At a point of one polygon the view of the other is exact: shadows are cut off the target, and
+// Lambert's formula is applied to the visible part (or to the hidden part, which is subtracted from
+// the unoccluded factor). Over the receiver the integrand is smooth except for kinks where a
+// shadow's edge passes a corner of the target: 3 x 3 Gauss points in cells. The cell with the
+// largest estimated error is divided across its stronger curvature until the sum of estimates is
+// below the tolerance. Where kinks are parallel to the receiver's sides, as between right-angled
+// bodies, cells are divided at the kinks (shadow_clip.h) and the integrand is smooth within.
 #pragma once
 
 #include <optional>
@@ -26,11 +26,11 @@ struct HiddenExchange {
   int points = 0;
 };
 
-// Keeps its memory between calls; one per thread.
+// Reuses its memory between calls; one per thread.
 class HiddenFactor {
  public:
   // The polygons must be in front of each other, the blockers in front of both (heights >= 0).
-  // unoccluded_m2: the exchange without blockers. At most 20 000 points are used.
+  // unoccluded_m2: the exchange without blockers. Uses at most 20 000 points.
   [[nodiscard]] HiddenExchange exchange(const ConvexPolygon& first, const ConvexPolygon& second,
                                         std::span<const Blocker* const> blockers,
                                         double unoccluded_m2, double tolerance_m2, double margin_m);

@@ -9,7 +9,7 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr int most_cuts = 4096;  // of one patch
+constexpr int most_cuts = 4096;  // per patch
 
 struct Line {
   Vec3 from, to;
@@ -42,7 +42,7 @@ class PatchCutter {
   }
 
  private:
-  // Where other faces meet the patch's plane.
+  // Lines in which other faces meet the patch's plane.
   void find_lines(const ConvexPolygon& polygon, std::uint32_t facet) {
     const Box box = box_around(polygon);
     const Plane plane{polygon[0], normal_};
@@ -79,7 +79,7 @@ class PatchCutter {
     if (ends.size() == 2) lines_.push_back({ends[0], ends[1]});
   }
 
-  // Appends the open parts; whether that is all of the polygon.
+  // Appends the open parts; returns whether they are the whole polygon.
   bool is_open(const ConvexPolygon& polygon, const std::vector<Line>& lines,
                std::vector<ConvexPolygon>& parts) {
     std::vector<Line> inside;
@@ -104,7 +104,7 @@ class PatchCutter {
         all = is_open(part, inside, parts) && all;
         continue;
       }
-      // Room for the next cut.
+      // Memory for the next cut.
       ConvexPolygon first, second;
       first.normal = second.normal = normal_;
       for (int k = 0; k <= part.count / 2; ++k) first.add(part[k]);
@@ -138,7 +138,7 @@ class PatchCutter {
       if (length <= 0.0) continue;
       const double from = glm::dot(inward, line.from - polygon[k]) / length;
       const double to = glm::dot(inward, line.to - polygon[k]) / length;
-      if (from <= thinnest_m_ && to <= thinnest_m_) return 0.0;  // along the border or beyond it
+      if (from <= thinnest_m_ && to <= thinnest_m_) return 0.0;  // at or outside the border
       if (from < 0.0) first = std::max(first, from / (from - to));
       if (to < 0.0) last = std::min(last, from / (from - to));
     }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of each patch that no body covers (closed_bodies.h), as polygons: form factors are
-// integrals over them.
+// The open parts of each patch, which no body covers (closed_bodies.h), as polygons: form factors
+// are integrals over them.
 //
-// A patch is cut along every line in which another face meets or crosses its plane. Bodies are
-// bounded by faces, so that each part is covered wholly or not at all, and one point decides.
+// A patch is cut along every line in which another face meets its plane. Faces bound bodies, so
+// that each part is completely covered or completely open; one point decides.
 #pragma once
 
 #include <cstdint>
@@ -18,15 +18,15 @@
 namespace earthshine::radiosity {
 
 struct PatchCover {
-  std::vector<std::uint32_t> near;   // what may cover points of the patch; empty: nothing
-  std::vector<ConvexPolygon> parts;  // not covered, about FacetSides::origin; empty: all or none
+  std::vector<std::uint32_t> near;   // possible covers; empty: none
+  std::vector<ConvexPolygon> parts;  // relative to FacetSides::origin; empty: all or none is open
   double open = 1.0;                 // share of the patch's area
-  double std_error = 0.0;            // of `open`: half of what lies in parts whose points disagree
+  double std_error = 0.0;            // half the area of parts with contradictory points
 
   [[nodiscard]] bool is_whole() const { return open == 1.0; }
 };
 
-// Per patch.
+// One result per patch.
 [[nodiscard]] std::vector<PatchCover> find_open_parts(const ClosedBodies& bodies,
                                                       const scenes::RayQuery& query,
                                                       const Patches& patches,

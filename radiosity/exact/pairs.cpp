@@ -18,10 +18,10 @@ struct PairError {
   double error_m2;
 };
 
-// Patches of one side against all of another.
+// Some patches of one side against all patches of another.
 struct Work {
   std::uint32_t first, second;  // sides
-  std::uint32_t begin, end;     // patches of the first
+  std::uint32_t begin, end;     // patches of the first side
   PairCounts counts;
   std::vector<PairError> errors;
 };
@@ -44,8 +44,8 @@ std::vector<Work> share_out(const FacetSides& sides) {
   return works;
 }
 
-// Where the shadows of a blocker fall on the plane h = 0, over all points of the receiver: inside
-// the hull of the shadows from its corners. Both in the plane's frame.
+// Extent of a blocker's shadows on the plane h = 0 for all points of the receiver: the hull of the
+// shadows of its corners. All in the plane's frame.
 Extent shadow_cover(const ConvexPolygon& blocker, const ConvexPolygon& receiver) {
   constexpr double far = std::numeric_limits<double>::infinity();
   Extent cover{far, -far, far, -far};
@@ -64,7 +64,7 @@ Extent shadow_cover(const ConvexPolygon& blocker, const ConvexPolygon& receiver)
   return cover;
 }
 
-// One unit of work and the memory it needs, kept from one to the next.
+// A unit of work with its memory, reused for later units.
 class Worker {
  public:
   void run(const FacetSides& sides, std::span<const PatchCover> covers, double tolerance,
@@ -125,7 +125,7 @@ class Worker {
     return false;
   }
 
-  // The patch's part in front of the other side's plane; nullptr if there is none.
+  // The part of the patch in front of the other side's plane; nullptr if there is none.
   const ConvexPolygon* in_front(const ConvexPolygon& polygon, const Side& other, bool cut,
                                 ConvexPolygon& room) const {
     if (!cut) return &polygon;
@@ -164,7 +164,7 @@ class Worker {
     }
   }
 
-  // Those that can stand between one patch and the other side, and where their shadows fall on it.
+  // Selects blockers between one patch and the other side, with the extents of their shadows.
   void narrow_blockers(const ConvexPolygon& patch, const Side& second) {
     narrow_.clear();
     covers_.clear();
@@ -186,7 +186,7 @@ class Worker {
     }
   }
 
-  // Of polygons in front of each other, past those of between_ that may hide one from the other.
+  // Exchange of polygons in front of each other, with the blockers of between_ that may occlude.
   HiddenExchange exchange(const ConvexPolygon& a, const ConvexPolygon& b, double unoccluded_m2,
                           double tolerance) {
     here_.clear();
@@ -200,7 +200,7 @@ class Worker {
                             tolerance * std::min(area_m2(a), area_m2(b)), margin_m_);
   }
 
-  // Between what is open of both patches.
+  // Between the open parts of both patches.
   HiddenExchange exchange_of_parts(const Side& first, const PatchCover& cover_a,
                                    const ConvexPolygon& a, const Side& second,
                                    const PatchCover& cover_b, const ConvexPolygon& b,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A_i F_ij of every pair of patches, without rays.
+// A_i F_ij for every pair of patches, without rays.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,18 @@
 namespace earthshine::radiosity {
 
 struct PairCounts {
-  std::uint64_t facing_away = 0;  // coplanar or behind each other: 0 without work
+  std::uint64_t facing_away = 0;  // coplanar or behind each other: 0 at no cost
   std::uint64_t unoccluded = 0;
   std::uint64_t partly_hidden = 0;
   std::uint64_t wholly_hidden = 0;
   std::uint64_t points = 0;  // at which shadows were cut
 };
 
-// Symmetric, by construction: each unordered pair is computed once.
+// Symmetric by construction: each unordered pair is computed once.
 struct PairExchange {
   std::size_t count = 0;
-  std::vector<double> upper_m2;          // A_i F_ij for i < j, row after row
-  std::vector<double> row_square_error;  // sum over j of the square of F_ij's estimated error
+  std::vector<double> upper_m2;          // A_i F_ij for i < j, by rows
+  std::vector<double> row_square_error;  // sum over j of the squared estimated errors of F_ij
   PairCounts counts;
 
   [[nodiscard]] std::size_t index(std::size_t i, std::size_t j) const {  // i < j
@@ -31,8 +31,8 @@ struct PairExchange {
   }
 };
 
-// Between the parts that `covers` leaves open, one a patch; empty: nothing is covered. tolerance:
-// of each partly hidden F_ij, absolute. The same bytes for any number of threads.
+// Uses the open parts in `covers`, one entry per patch; empty: nothing is covered. tolerance: of
+// each partly hidden F_ij, absolute. The result does not depend on the number of threads.
 [[nodiscard]] PairExchange exchange_of_pairs(const Patches& patches, const FacetSides& sides,
                                              std::span<const PatchCover> covers, double tolerance);
 

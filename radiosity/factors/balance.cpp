@@ -9,21 +9,22 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr int most_sweeps = 500;  // passes over the matrix there and back
+constexpr int most_sweeps = 500;  // passes over the matrix and its transpose
 constexpr int plain_sweeps = 4;
 
-// When to stop trying.
+// Termination criteria.
 struct Patience {
-  int passes_a_step;  // of conjugate gradients; where a scaling exists some ten bring a tenth
-  double least_gain;  // a step that leaves more of the defect than that is the last
+  // Of conjugate gradients: if a scaling exists, about ten passes reduce the defect to a tenth.
+  int passes_a_step;
+  double least_gain;  // a step that leaves a larger share of the defect is the last one
 };
-// The hits as cast may admit no scaling: the defect then stays, or shrinks by about e a step, while
-// scales run off and take hits that fit nowhere to nothing.
+// The hits as cast may have no scaling: then the defect stagnates, or decreases by about e per step
+// while scales diverge and remove hits that fit nowhere.
 constexpr Patience with_hits{60, 0.25};
-// Filled ones do: what ends it is rounding.
+// Filled hits have a scaling: only rounding ends the iteration.
 constexpr Patience with_filled{most_sweeps, 0.999};
 
-// Sweeps until the defect is `enough` or patience ends.
+// Iterates until the defect is at most `enough` or a criterion ends it.
 void iterate(Scaling& scaling, double enough, const Patience& patience, BalanceReport& report) {
   int passes = 0;
   report.after = scaling.defect();
@@ -41,7 +42,7 @@ void iterate(Scaling& scaling, double enough, const Patience& patience, BalanceR
   report.sweeps += passes;
 }
 
-// Whether hits had to be filled in.
+// Returns whether hits had to be added.
 bool find_scales(Scaling& scaling, double enough, BalanceReport& report) {
   constexpr double rounding = 1e-12;
   scaling.start();

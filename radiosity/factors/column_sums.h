@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums down the columns of the form factors.
+// Column sums of the form factors.
 #pragma once
 
 #include <algorithm>
@@ -16,9 +16,9 @@
 
 namespace earthshine::radiosity {
 
-// Per column j: sum_i weight(i) F_ij. Rows are split in bands, as many as the factors ask for, with
-// sums of their own, added in order: the same bits on any number of threads and ranks. Where a
-// band's rows are with several ranks, each goes on from the sums of the one before.
+// Per column j: sum_i weight(i) F_ij. Rows are divided into bands with separate sums, which are
+// added in order: the result is bit-identical for any number of threads and ranks. If several ranks
+// have rows of a band, each continues the sums of the previous one.
 template <class Weight>
 class ColumnSums {
  public:
@@ -32,10 +32,10 @@ class ColumnSums {
     goes_on_ = begin(last_) > own_.end;
   }
 
-  // Of the patches whose rows are here.
+  // For the patches whose rows are on this rank.
   [[nodiscard]] std::vector<double> find() {
     partial_.assign((last_ - first_) * count_, 0.0);
-    // The last band first: another rank may wait for it.
+    // The last band first: another rank may be waiting for it.
     base::parallel_chunks(last_ - first_, 1, [&](std::size_t k, std::size_t) {
       if (const std::size_t band = last_ - 1 - k; band > first_ || !is_begun_) add_rows(band);
     });
@@ -80,8 +80,8 @@ class ColumnSums {
     return total;
   }
 
-  // Each rank adds up the columns of its patches: of the bands that ended with every rank, which
-  // are in order as the ranks are.
+  // Each rank adds the columns of its patches over the bands that ended on every rank, in the order
+  // of ranks.
   [[nodiscard]] std::vector<double> total_of_ranks() {
     base::Ranks& all = *base::ranks();
     const auto ranks = static_cast<std::size_t>(all.count()),
@@ -113,7 +113,7 @@ class ColumnSums {
   }
 
   static void add_band(std::span<double> total, base::Parcel& sums) {
-    std::array<double, 1024> some;  // stays in the cache
+    std::array<double, 1024> some;  // fits in the cache
     for (std::size_t k = 0; k < total.size(); k += some.size()) {
       const std::size_t count = std::min(some.size(), total.size() - k);
       sums.pass_range(some.data(), count);
@@ -125,11 +125,11 @@ class ColumnSums {
   Weight weight_;
   std::size_t count_;
   base::Shares::Range own_;
-  // Every band has a sum of every column: where rows are short, bands cost more than entries.
+  // Every band stores a sum per column: with short rows, bands need more memory than entries.
   std::size_t bands_ = std::clamp<std::size_t>(std::size_t(f_.rays_per_patch) / 4, 8, 16);
   std::size_t first_ = 0, last_ = 0;         // bands with rows here: [first_, last_)
-  bool is_begun_ = false, goes_on_ = false;  // the first one by, the last one with another rank
-  std::vector<double> partial_;              // of each
+  bool is_begun_ = false, goes_on_ = false;  // another rank begins the first, ends the last band
+  std::vector<double> partial_;              // of each band
 };
 
 template <class Weight>

@@ -32,7 +32,7 @@ CoveredPatches::CoveredPatches(const Patches& patches, const OpenParts& open) {
   for (std::uint32_t i = 0; i < open.share.size(); ++i) {
     if (open.share[i] > 0.0) continue;
     const Facet& facet = patches.facets[patches.facet[i]];
-    if (facet.is_cluster()) continue;  // nothing is read between its cells
+    if (facet.is_cluster()) continue;  // no interpolation between a cluster's cells
     const std::uint32_t first = patches.is_back[i] != 0 ? facet.first_back : facet.first_front;
     const Rectangle r = patches.rectangle(i);
     Border border{i, {}};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Patches that a body covers wholly: they take no part, and what they show. Nobody sees them, but
-// who reads the radiosity between the cells of a facet (raytrace/incoming/radiance_table.h,
-// viewers) mixes in neighbours of what is seen.
+// Completely covered patches: excluded from the solution, and given a value for display. They are
+// invisible, but interpolation between the cells of a facet (raytrace/incoming/radiance_table.h,
+// viewers) uses them as neighbours of visible patches.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,17 @@
 
 namespace earthshine::radiosity {
 
-// A ray that slipped through the seam between two bodies, or met a cell's edge where a body stands
-// on it, may name a patch that takes no part: it is lost, as if it had met the body's back. Rows
-// stay closed. factors.open has a share for every patch.
+// A ray through the seam between two bodies, or to the edge of a cell on which a body stands, may
+// hit an excluded patch. It is counted as lost, as if it had hit the body's back, so that rows stay
+// closed. factors.open must have a share for every patch.
 void lose_hits_on_covered(FormFactors& factors);
 
 class CoveredPatches {
  public:
   CoveredPatches(const Patches& patches, const OpenParts& open);
 
-  // Gives each the mean of those around it on its side of the facet that are open. Where there are
-  // none its value stays.
+  // Assigns each covered patch the mean of the adjacent open patches on its side of the facet.
+  // Without such neighbours the value is unchanged.
   void show_neighbours(std::vector<float>& values, std::size_t columns) const;
 
  private:

@@ -19,10 +19,10 @@ struct NewHit {
   float hits;
 };
 
-// Hits to add, each with the rank that has its row.
+// Hits to add, each on the rank that has its row.
 class NewHits {
  public:
-  // of_gaps: only where no hit is yet.
+  // of_gaps: only where there is no hit yet.
   NewHits(FormFactors& f, bool of_gaps)
       : f_(f),
         of_gaps_(of_gaps),
@@ -35,7 +35,7 @@ class NewHits {
     away_[static_cast<std::size_t>(f_.shares.holder(hit.row))].push_back(hit);
   }
 
-  // Sends those of other ranks' rows there; all ranks at once.
+  // Sends hits to the ranks of their rows; collective.
   void deliver() {
     if (!f_.shares.divided()) return;
     std::vector<std::string> to;
@@ -53,14 +53,14 @@ class NewHits {
     }
   }
 
-  // On the diagonal, whether there is a hit or not; after all others.
+  // Adds to the diagonal, after all other hits.
   void add_own(std::uint32_t i, float hits) {
     Row& row = sorted_row(i);
     const std::pair<std::uint32_t, float> own(i, hits);
     row.insert(std::lower_bound(row.begin(), row.end(), own), own);
   }
 
-  // Puts them into the matrix.
+  // Merges the new hits into the matrix.
   void join() {
     FormFactors old;
     old.row_start.assign(f_.count() + 1, 0);
@@ -91,14 +91,14 @@ class NewHits {
   }
 
  private:
-  using Row = std::vector<std::pair<std::uint32_t, float>>;  // columns and hits to add there
+  using Row = std::vector<std::pair<std::uint32_t, float>>;  // columns and hits to add
 
   void take(const NewHit& hit) {
     if (of_gaps_ && met(hit.row, hit.column)) return;
     rows_[hit.row - own_.begin].emplace_back(hit.column, hit.hits);
   }
 
-  // Hits of one process come in order.
+  // On one process, hits arrive in order.
   Row& sorted_row(std::size_t i) {
     Row& row = rows_[i - own_.begin];
     if (f_.shares.divided()) std::sort(row.begin(), row.end());
@@ -116,14 +116,14 @@ class NewHits {
   FormFactors& f_;
   bool of_gaps_;
   base::Shares::Range own_;
-  std::vector<Row> rows_;                  // of this rank
+  std::vector<Row> rows_;                  // rows of this rank
   std::vector<std::vector<NewHit>> away_;  // per rank
 };
 
 }  // namespace
 
 std::size_t borrow_starved_columns(FormFactors& f, std::span<const double> area_m2) {
-  constexpr double starved = 0.01;  // share of what a column should hold by its own row
+  constexpr double starved = 0.01;  // of the column sum that its own row implies
   const std::vector<double> sums =
       weighted_column_sums(f, [&](std::size_t i) { return area_m2[i] * f.kept[i]; });
   const base::Shares::Range own = f.shares.own(f.count());
@@ -156,7 +156,7 @@ bool keeps_its_own(const FormFactors& f, std::span<const double> area_m2, std::s
 }
 
 std::size_t fill_both_ways(FormFactors& f, std::span<const double> area_m2) {
-  // All entries pass between ranks, so many times fewer at once.
+  // All entries pass between ranks; rounds reduce the peak memory.
   constexpr std::uint32_t rounds = 16;
   const auto own = f.shares.own(f.count());
   const auto begin = static_cast<std::uint32_t>(own.begin),

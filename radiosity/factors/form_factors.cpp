@@ -14,7 +14,7 @@
 namespace earthshine::radiosity {
 namespace {
 
-// a = 1 - mirror - transmit, as luminance: one matrix serves the three channels.
+// a = 1 - mirror - transmit, as luminance: the three channels share one matrix.
 std::vector<double> kept_shares(const scenes::Scene& scene, const Patches& patches) {
   std::vector<double> kept(patches.count());
   for (std::size_t i = 0; i < kept.size(); ++i) {
@@ -26,7 +26,7 @@ std::vector<double> kept_shares(const scenes::Scene& scene, const Patches& patch
   return kept;
 }
 
-// Where bands of about as many rays start, and the end of the last.
+// Starts of bands with about equal numbers of rays, and the end of the last one.
 std::vector<std::size_t> cut_in_bands(const Patches& patches, std::span<const std::uint32_t> rows,
                                       const std::vector<std::uint32_t>& runs) {
   constexpr std::uint32_t runs_of_a_band = 64;
@@ -41,9 +41,9 @@ std::vector<std::size_t> cut_in_bands(const Patches& patches, std::span<const st
   return start;
 }
 
-// What the bands found beside entries, and where the entries of each row will be.
+// Joins the bands' data except entries, and computes where each row's entries start.
 void join_rows(std::vector<Band>& bands, FormFactors& factors) {
-  // One band alone was cast by every rank.
+  // A single band was cast by every rank.
   const bool divided = bands.size() > 1 && base::ranks() != nullptr;
   std::vector<double> cost;
   for (Band& band : bands) {
@@ -68,15 +68,15 @@ void join_rows(std::vector<Band>& bands, FormFactors& factors) {
       ++i;
     }
   }
-  factors.column.reserve(factors.row_start[i]);  // memory once it is filled
+  factors.column.reserve(factors.row_start[i]);  // allocated lazily
   factors.hits.reserve(factors.row_start[i]);
 }
 
-// The bands' entries come into the matrix in so many rounds, after each of which what they took is
-// free: so much less is there twice, and on its way between ranks.
+// Rounds in which the bands' entries move to the matrix. The memory of each round is then free,
+// which limits the duplicated data, and the data in transit between ranks.
 constexpr std::size_t rounds = 16;
 
-// Joins the bands' entries and leaves them empty.
+// Moves the bands' entries to the matrix and empties the bands.
 void join_entries(std::vector<Band>& bands, FormFactors& factors) {
   for (std::size_t round = 0, k = 0; round < rounds; ++round) {
     for (; k < bands.size() * (round + 1) / rounds; ++k) {
@@ -90,8 +90,7 @@ void join_entries(std::vector<Band>& bands, FormFactors& factors) {
   }
 }
 
-// The same where each rank has the bands that it has cast: brings every row to the rank that will
-// have it.
+// As join_entries, if each rank has the bands that it cast: moves every row to its rank.
 void deal_entries(std::vector<Band>& bands, FormFactors& factors) {
   base::Ranks& all = *base::ranks();
   std::size_t first = 0;  // row of the band
@@ -130,11 +129,11 @@ void deal_entries(std::vector<Band>& bands, FormFactors& factors) {
   }
 }
 
-// The shares of sky and black backs, and the row scale that makes the row close to the last digit.
+// Sets the shares of sky and black backs, and the row scale that closes the row exactly.
 void close_row(FormFactors& factors, std::size_t i, const Row& row) {
-  // Equal to the number of rays but for the rounding of mirrors' weights.
+  // Equal to the number of rays except for the rounding of mirrors' weights.
   const double all = row.landed + row.sky + row.black;
-  if (all <= 0.0) {  // wholly covered
+  if (all <= 0.0) {  // completely covered
     factors.black[i] = factors.lost[i] = 1.0;
     return;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which patch a ray met: the arithmetic of Patches::find in single precision, half a cache line
-// a triangle.
+// Patch of a ray's hit: the arithmetic of Patches::find in single precision, half a cache line per
+// triangle.
 #pragma once
 
 #include <bit>
@@ -13,19 +13,19 @@ namespace earthshine::radiosity {
 
 class HitTargets {
  public:
-  // passes_on: per material, whether rays go on from it (a mirror, glass).
+  // passes_on: per material, whether rays continue from it (mirror, glass).
   HitTargets(const Patches& patches, const std::vector<bool>& passes_on);
 
   [[nodiscard]] bool passes_on(std::uint32_t triangle) const {
     return targets_[triangle].passes_on != 0;
   }
 
-  // Any number will do, also that of no triangle.
+  // Accepts any number, including no_triangle.
   void prefetch(std::uint32_t triangle) const {
     if (triangle < targets_.size()) __builtin_prefetch(&targets_[triangle]);
   }
 
-  // As Patches::find: no_patch for the back of a one-sided surface.
+  // As Patches::find; no_patch for the back of a one-sided surface.
   [[nodiscard]] std::uint32_t find(std::uint32_t triangle, float u, float v, bool front) const {
     const Target& target = targets_[triangle];
     const std::uint32_t first = front ? target.first_front : target.first_back;
@@ -54,8 +54,8 @@ class HitTargets {
     std::uint8_t kind, passes_on;
   };
 
-  // s and t as s[0] + s[1] u + s[2] v, per kind: triangles with apex 0, 1, 2 (s t in place of t),
-  // the first and the second half of a parallelogram.
+  // s and t as s[0] + s[1] u + s[2] v, by kind: triangles with apex 0, 1, 2 (s t instead of t), the
+  // first and the second half of a parallelogram.
   struct Linear {
     float s[3], t[3];
   };
@@ -76,8 +76,8 @@ class HitTargets {
   std::vector<Target> targets_;
 };
 
-// Counts a row's hits per patch: dense counts, and a bit per touched column so that they come out
-// sorted without a sort.
+// Counts a row's hits per patch: dense counts and one bit per touched column, which yields the
+// columns in order without sorting.
 
 class HitCounter {
  public:
@@ -91,7 +91,7 @@ class HitCounter {
     touched_[patch / 64] |= std::uint64_t{1} << (patch % 64);
   }
 
-  // Appends the touched columns, ascending, with their counts; starts anew.
+  // Appends the touched columns, ascending, with their counts; then resets.
   void take(std::vector<std::uint32_t>& column, std::vector<float>& hits) {
     for (std::size_t word = 0; word < touched_.size(); ++word) {
       for (std::uint64_t bits = touched_[word]; bits != 0; bits &= bits - 1) {

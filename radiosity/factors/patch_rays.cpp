@@ -16,10 +16,10 @@ namespace {
 constexpr std::uint32_t width = scenes::RayPacket::width;
 static_assert(width == base::SobolSet4::width);
 
-// Keeps sample points off the patch's edges, where rounding could put them behind a neighbour.
+// Inset of sample points from the patch's edges, where rounding could put them behind a neighbour.
 constexpr double inset = 1e-4;
 
-// Of an object of so many patches, for it to be known by `wanted` of them.
+// Runs per patch for an object of `patches` patches, so that it is as accurate as one of `wanted`.
 std::uint32_t runs_of(std::size_t patches, std::size_t wanted, int rays_per_patch) {
   if (patches == 0) return 1;
   const std::size_t needed = std::bit_ceil((wanted + patches - 1) / patches);

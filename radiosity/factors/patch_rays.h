@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rays that patches send out: points uniform over the patch, directions cosine-distributed
-// about its normal, Owen-Sobol in the four dimensions together, in packets of neighbours.
+// Rays of patches: points uniform over the patch, directions cosine-distributed about its normal,
+// Owen-Sobol in all four dimensions, in packets of neighbours.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,7 @@
 
 namespace earthshine::radiosity {
 
-// The set of samples is shared by all patches; each scrambles it with a key of its own. Safe on
-// many threads.
+// All patches share the set of samples; each scrambles it with its own key. Thread-safe.
 class PatchRays {
  public:
   // rays: a power of two, at least RayPacket::width.
@@ -24,23 +23,23 @@ class PatchRays {
 
   [[nodiscard]] std::uint32_t count() const { return samples_.count(); }
 
-  // One patch, in the ray query's single-precision frame.
+  // A patch in the ray query's single-precision frame.
   struct Sender {
     base::SobolSet4::Scramble scramble;
     glm::vec3 corner, a, b;  // p = corner + s (a + t b), for parallelograms corner + s a + t b
     glm::vec3 tangent, bitangent, normal;
     float s0, s_span, t0, t_span;  // of s for parallelograms, of s^2 for triangles
     bool parallelogram;
-    std::uint32_t several;  // the patch, if it is several triangles; then only `scramble` is used
+    std::uint32_t several;  // the patch, if it has several triangles; then only `scramble` is used
   };
   [[nodiscard]] Sender sender(std::uint32_t patch, base::Key key) const;
 
-  // The patch's next `count` rays, in place of the first ones (base::SobolSet4::go_to_run).
+  // Selects run `run` of `count` rays instead of the first one (base::SobolSet4::go_to_run).
   void go_to_run(std::uint32_t run, Sender& sender) const {
     samples_.go_to_run(run, sender.scramble);
   }
 
-  // Rays first .. first + width - 1 of the patch.
+  // Makes rays first .. first + width - 1 of the patch.
   void make(const Sender& sender, std::uint32_t first, scenes::RayPacket& rays) const;
 
  private:
@@ -52,22 +51,23 @@ class PatchRays {
   base::SobolSet4 samples_;
 };
 
-// How many rays the patches of small objects send. The mean illuminance of an object is a mean over
-// all of its patches' rays: a wall of 500 patches is known by 500 times the rays of a gauge that is
-// a single patch. What a solve states of an object shall not depend on that, so the patches of an
-// object that has fewer than 64 send as many rays together as 64 would.
+// Numbers of rays for the patches of small objects. The mean illuminance of an object averages over
+// all rays of its patches: a wall of 500 patches has 500 times the rays of an instrument of one
+// patch. To make stated means equally accurate, the patches of an object with fewer than 64 patches
+// together cast as many rays as 64 patches.
 
-// As many patches' rays an object has at least, while that is within the bounds below.
+// Minimum number of patches' rays for an object, within the limits below.
 inline constexpr std::size_t patches_known_by = 64;
-// What all of them cost is bounded: by a quarter of the scene's patches or by 2048 of them,
-// whichever is more. Where many objects are small, all get less.
+// Total extra rays: at most those of a quarter of the scene's patches, or of 2048 patches,
+// whichever is more. With many small objects, all get fewer.
 inline constexpr std::size_t most_extra_share = 4, most_extra_runs = 2048;
-// No row is longer for it.
+// Limit per row.
 inline constexpr std::uint32_t most_rays_of_a_row = std::uint32_t{1} << 20;
 
-// Per object of the scene: the runs of rays_per_patch rays that each of its patches sends, a power
-// of two, 1 for objects of patches_known_by patches and more. Up to the last bound it depends on
-// the cut alone, so that solves with other numbers of rays share them in the same proportion.
+// Per object of the scene: number of runs of rays_per_patch rays for each of its patches, a power
+// of two, 1 for objects of at least patches_known_by patches. Except for the last limit it depends
+// only on the patches, so that solves with different ray numbers distribute them in the same
+// proportion.
 [[nodiscard]] std::vector<std::uint32_t> object_runs(const scenes::Scene& scene,
                                                      const Patches& patches, int rays_per_patch);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// F x for many right-hand sides: the matrix is read once for up to 32 of them.
+// F x for many right-hand sides: one pass over the matrix serves up to 32 of them.
 #include <algorithm>
 #include <memory>
 
@@ -12,15 +12,15 @@ namespace {
 constexpr std::size_t lanes = 4;
 using Lanes [[gnu::vector_size(lanes * sizeof(double))]] = double;
 
-constexpr std::size_t most_blocks = 8;  // of four columns, held in registers
+constexpr std::size_t most_blocks = 8;  // of four columns, in registers
 
-// x of all patches with its columns scaled by column_scale and padded to whole blocks, from column
-// `first` on. x: of own rows.
+// x of all patches, multiplied by column_scale and padded to whole blocks, from column `first` on.
+// x: of own rows.
 std::unique_ptr<Lanes[]> packed(const FormFactors& factors, std::span<const double> x,
                                 std::size_t columns, std::size_t first, std::size_t blocks) {
   const std::size_t used = std::min(columns - first, blocks * lanes);
   const base::Shares::Range own = factors.shares.own(factors.count());
-  // What a thread writes first is near it.
+  // First touch places memory near the thread.
   auto z = std::make_unique_for_overwrite<Lanes[]>(factors.count() * blocks);
   base::parallel_chunks(own.end - own.begin, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
@@ -35,14 +35,14 @@ std::unique_ptr<Lanes[]> packed(const FormFactors& factors, std::span<const doub
   return z;
 }
 
-// Entries in turn go to this many sums, so that one addition need not wait for the last: four times
-// four columns, fewer the more blocks there are.
+// Number of independent sums for successive entries, so that no addition waits for the previous
+// one: four sums of four columns, fewer with more blocks.
 template <std::size_t Blocks>
 constexpr std::size_t chains = Blocks == 1   ? 4
                                : Blocks <= 3 ? 2
                                              : 1;
 
-// y: of the row `begin` on.
+// y: from row `begin` on.
 template <std::size_t Blocks>
 void multiply_rows(const FormFactors& factors, const Lanes* z, std::size_t begin, std::size_t end,
                    std::size_t columns, std::size_t first, double* y) {

@@ -82,13 +82,13 @@ void RowCaster::cast(std::uint32_t patch, HitCounter& counter, Band& band) const
   band.rows.push_back(row);
 }
 
-// Counts the patch's rays but those from points that the bodies `near` cover. If asked to look out
-// for them it stops at the first black back, with false, where bodies near the patch may be the
-// reason, and names them: what sees no back is not covered, and pays nothing.
+// Counts the patch's rays, except from points covered by the bodies `near`. look_out: stops at the
+// first black back and returns false if bodies near the patch may be the cause, and lists them. A
+// patch that sees no back is not covered and costs nothing extra.
 bool RowCaster::trace(std::uint32_t patch, PatchRays::Sender sender, bool look_out,
                       std::vector<std::uint32_t>& near, Row& row, HitCounter& counter,
                       Band& band) const {
-  // A packet's hits are counted after the next packet was traced: by then what they need has come
+  // A packet's hits are counted after the next packet was traced: by then their data has arrived
   // from memory.
   RayPacket packets[2];
   HitPacket hits[2];
@@ -113,7 +113,7 @@ bool RowCaster::trace(std::uint32_t patch, PatchRays::Sender sender, bool look_o
   return true;
 }
 
-// Whatever its rays meet: it has holes, or others lie on it.
+// Whether it may be covered independent of its rays: it has holes, or others lie on it.
 bool RowCaster::may_be_covered(std::uint32_t patch) const {
   if (scene_.materials[patches_.material(patch)].has_holes()) return true;
   return is_covered_by_faces(query_.coincident(), patches_, patch);
@@ -168,7 +168,7 @@ void RowCaster::escape(const Vec3& direction, double weight, Row& row, Band& ban
   band.sky_illuminance[band.sky_illuminance.size() - sky_parts_ + part] += weight * sky_(direction);
 }
 
-// Counts a hit on a mirror or glass and the hits behind it.
+// Counts a hit on a mirror or glass, and the hits after it.
 void RowCaster::follow(const RayPacket& packet, std::size_t lane, const scenes::Hit& first,
                        Row& row, HitCounter& counter, Band& band) const {
   float weight = 1.0F;
@@ -185,13 +185,13 @@ void RowCaster::follow(const RayPacket& packet, std::size_t lane, const scenes::
       row.black += weight;
       return false;
     }
-    // The inside of a glass body passes light on as its outside does, and is no patch of its own.
+    // The inside of a glass body transmits like its outside, and is no patch.
     const double passed_on = to == no_patch ? 1.0 : 1.0 - kept_[to];
     if (to != no_patch) counter.add(to, weight);
     weight *= static_cast<float>(passed_on);
     if (weight <= 0.0F) return false;
     if (step < scenes::most_specular_steps) return true;
-    // The remaining weight stays here: no light may end that nothing absorbs.
+    // The remaining weight ends here: light must not vanish.
     if (to != no_patch && kept_[to] > 0.0) {
       counter.add(to, weight / static_cast<float>(kept_[to]));
     } else {

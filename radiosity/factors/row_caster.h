@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One row of the form factors at a time: the rays of a patch and what they meet.
+// Casts the rays of one patch and counts their hits, one row of the form factors at a time.
 #pragma once
 
 #include <cstdint>
@@ -15,32 +15,31 @@
 
 namespace earthshine::radiosity {
 
-// What one row found beside its hits.
+// Results of one row besides its hits.
 struct Row {
   std::uint32_t entries = 0;
   double black = 0.0, sky = 0.0;  // in rays
-  double landed = 0.0;            // in rays, on patches, where they end
+  double landed = 0.0;            // in rays, that end on patches
   std::uint64_t rays = 0;
-  std::uint32_t sent = 0;  // rays that left the patch
-  std::uint32_t open =
-      0;  // of them, those that left from points which no body covers: those that count
+  std::uint32_t sent = 0;  // rays cast
+  std::uint32_t open = 0;  // rays cast from open points: these count
 };
 
-// The rows of one chunk of patches, side by side.
+// The rows of one chunk of patches.
 struct Band {
   std::vector<Row> rows;
   std::vector<double> back_hits;         // per object
-  std::vector<std::uint32_t> backs_met;  // of the row in progress: the objects
+  std::vector<std::uint32_t> backs_met;  // of the present row: the objects
   std::vector<std::uint32_t> column;
   std::vector<float> hits;
-  std::vector<Rgb> sky_illuminance;  // of each row and cell of the sky
+  std::vector<Rgb> sky_illuminance;  // for each row and cell of the sky
 };
 
-// Safe on many threads, each with a counter and a band of its own.
+// Thread-safe, with one counter and one band per thread.
 class RowCaster {
  public:
-  // What is given must outlive it. kept: a_j per patch; rays: a power of two; runs: of so many
-  // rays, per object of the scene, empty for one each.
+  // All arguments must outlive it. kept: a_j per patch; rays: a power of two; runs: per object of
+  // the scene, in units of `rays`; empty: one each.
   RowCaster(const scenes::Scene& scene, const scenes::RayQuery& query, const Patches& patches,
             const std::vector<double>& kept, const FormFactorOptions& options, std::uint32_t rays,
             const std::vector<std::uint32_t>& runs, const SkyRadiance& sky);
@@ -48,7 +47,7 @@ class RowCaster {
   // Appends the patch's row to the band.
   void cast(std::uint32_t patch, HitCounter& counter, Band& band) const;
 
-  // Made when they are first asked for, here or by a row.
+  // Created at the first request, here or by a row.
   [[nodiscard]] std::shared_ptr<const ClosedBodies> bodies() const;
 
  private:
@@ -61,7 +60,7 @@ class RowCaster {
                   Band& band) const;
   void follow(const scenes::RayPacket& packet, std::size_t lane, const scenes::Hit& first, Row& row,
               HitCounter& counter, Band& band) const;
-  // A ray that met nothing: to the sky's light of the row that comes last.
+  // Adds a ray that hit nothing to the sky light of the last row.
   void escape(const Vec3& direction, double weight, Row& row, Band& band) const;
 
   const scenes::Scene& scene_;
@@ -77,7 +76,7 @@ class RowCaster {
   bool leave_out_covered_, dark_sky_;
   PatchRays rays_;
   HitTargets targets_;
-  // Made when somebody asks: most scenes have no use for them.
+  // Created on demand: most scenes do not need them.
   mutable std::once_flag bodies_made_;
   mutable std::shared_ptr<const ClosedBodies> bodies_;
 };

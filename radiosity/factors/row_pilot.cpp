@@ -17,7 +17,7 @@ constexpr std::size_t fewest_rows = 32, most_rows = 256;
 
 struct Pilot {
   double patches = 0.0;
-  double entries = 0.0;  // of a mean row
+  double entries = 0.0;  // per mean row
   bool meets_backs = false;
 };
 
@@ -39,7 +39,7 @@ Pilot cast_pilot(const scenes::Scene& scene, const scenes::RayQuery& query, doub
                       [](double share) { return share > 0.0; })};
 }
 
-// Both sides of sheets.
+// Includes both sides of sheets.
 double surface_m2(const scenes::Scene& scene) {
   double area_m2 = 0.0;
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
@@ -70,7 +70,7 @@ ExpectedRows expected_rows(const scenes::Scene& scene, const scenes::RayQuery& q
 
 double expected_unreached(const scenes::Scene& scene, std::size_t patches, int rays_per_patch) {
   const double density = double(patches) / surface_m2(scene);
-  // Facets and clusters, uncut.
+  // Facets and clusters, undivided.
   const Patches uncut =
       subdivide(scene, std::numeric_limits<double>::infinity(), std::sqrt(1.0 / density));
   double unreached = 0.0;

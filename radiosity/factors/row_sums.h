@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is found over all rows of the form factors, of which each rank has its own: neither threads
-// nor ranks change a bit of it.
+// Sums over all rows of the form factors, distributed over ranks: bit-identical for any number of
+// threads and ranks.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace earthshine::radiosity {
 
-// body(begin, end, sums): of some of the own rows, counted from the first of them; it may change
-// what belongs to these rows. Returned are `each` sums over all rows.
+// body(begin, end, sums): for a range of own rows, counted from the first one; it may modify data
+// of these rows. Returns `each` sums over all rows.
 template <class Body>
 std::vector<double> sums_over_rows(const FormFactors& factors, std::size_t each, Body body) {
   const std::size_t count = factors.count(), first = factors.shares.own(count).begin;
@@ -23,7 +23,7 @@ std::vector<double> sums_over_rows(const FormFactors& factors, std::size_t each,
                                      });
 }
 
-// The largest of each value, which ranks have found among their own rows.
+// Maximum of each value over the ranks.
 inline void keep_largest(const base::Shares& shares, std::vector<double>& values) {
   shares.hear([&](base::Parcel& parcel) { parcel.pass(values); },
               [&](base::Parcel& parcel) {
@@ -36,7 +36,7 @@ inline void keep_largest(const base::Shares& shares, std::vector<double>& values
 }
 
 inline double dot(const double* a, const double* b, std::size_t count) {
-  std::array<double, 4> sums{};  // none waits for the addition before it
+  std::array<double, 4> sums{};  // independent, to overlap additions
   std::size_t k = 0;
   for (; k + sums.size() <= count; k += sums.size()) {
     for (std::size_t s = 0; s < sums.size(); ++s) sums[s] += a[k + s] * b[k + s];

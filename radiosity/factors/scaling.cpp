@@ -110,7 +110,7 @@ int Scaling::newton_step(int most_passes) {
   std::vector<double> largest = {0.0};
   for (const double s : step) largest[0] = std::max(largest[0], std::abs(s));
   keep_largest(f_.shares, largest);
-  // Logarithms beyond this are outside of what first order says.
+  // Limits the step where the first-order model is invalid.
   const double damping = std::min(1.0, 1.0 / std::max(1e-300, largest[0]));
   for (std::size_t k = 0; k < step.size(); ++k) {
     scale_column(own_.begin + k, std::exp(damping * step[k]));
@@ -160,7 +160,7 @@ void Scaling::finish() {
   }
 }
 
-// The bound stops a column that too few rays reached to ever fill from running off to infinity.
+// The bound stops the divergence of a column that too few rays hit.
 void Scaling::scale_column(std::size_t j, double factor) {
   f_.column_scale[j] = std::min(f_.column_scale[j] * factor, largest_scale);
 }
@@ -173,7 +173,7 @@ void Scaling::update_sums() {
   }
 }
 
-// The change of a_j * sums when the column scales' logarithms change by `step`.
+// Change of a_j * sums for the change `step` of the column scales' logarithms.
 std::vector<double> Scaling::response(const std::vector<double>& step) const {
   std::vector<double> weighted(step.size()), rows(step.size());
   for (std::size_t k = 0; k < step.size(); ++k) weighted[k] = f_.kept[own_.begin + k] * step[k];
@@ -186,8 +186,8 @@ std::vector<double> Scaling::response(const std::vector<double>& step) const {
   return change;
 }
 
-// Conjugate gradients in units in which the diagonal is 1 (the diagonal as preconditioner); a patch
-// without one is left out. A tenth of the defect is left to the next step, which knows more.
+// Conjugate gradients in units in which the diagonal is 1 (diagonal preconditioner); patches with a
+// diagonal of 0 are excluded. Stops at a tenth of the defect: the next step has a better model.
 int Scaling::solve_for_step(std::vector<double>& step, int most_passes) const {
   constexpr double left = 0.1;
   const std::size_t count = sums_.size();
@@ -208,7 +208,7 @@ int Scaling::solve_for_step(std::vector<double>& step, int most_passes) const {
     std::vector<double> change = response(way);
     for (std::size_t k = 0; k < count; ++k) change[k] *= unit[k];
     const double curvature = sum_of([&](std::size_t k) { return along[k] * change[k]; });
-    if (!(curvature > 0.0)) {  // hits that have no scaling: further passes would bring nothing
+    if (!(curvature > 0.0)) {  // no scaling exists: more iterations are useless
       std::fill(step.begin(), step.end(), 0.0);
       ++passes;
       break;
@@ -225,7 +225,8 @@ int Scaling::solve_for_step(std::vector<double>& step, int most_passes) const {
   const bool finite =
       sum_of([&](std::size_t k) { return std::isfinite(step[k]) ? 0.0 : 1.0; }) == 0.0;
   for (std::size_t k = 0; k < count; ++k) step[k] = finite ? unit[k] * step[k] : 0.0;
-  // A perfect mirror keeps nothing, so that no row feels its column's scale: it follows alone.
+  // A perfect mirror keeps nothing, so that no row depends on its column's scale: it is set
+  // directly.
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t j = own_.begin + k;
     if (f_.kept[j] <= 0.0 && sums_[k] > 0.0) step[k] = std::log(area_m2_[j] / sums_[k]);

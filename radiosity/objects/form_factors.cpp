@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint32_t replicates = ray_replicates;
 constexpr std::size_t signings = 64;
 
-// One patch's hits by object; `end` has the columns of sky and black backs after the objects.
+// A patch's hits by object; columns of sky and black backs follow the objects.
 struct Tally {
   std::vector<std::uint32_t> start;  // per patch, and the end
   std::vector<std::uint32_t> column;
@@ -44,7 +44,7 @@ Tally tally(const FormFactors& f, const Patches& patches, std::size_t objects) {
   return result;
 }
 
-// Adds weight(patch) * area * share of every patch to its object's row. area_m2: what is open.
+// Adds weight(patch) * area * share of every patch to its object's row. area_m2: open areas.
 template <class Weight>
 void add(const Tally& from, const Patches& patches, std::span<const double> area_m2, Weight weight,
          ObjectTable& table) {
@@ -57,7 +57,7 @@ void add(const Tally& from, const Patches& patches, std::span<const double> area
   }
 }
 
-// Which eight of the sixteen replicates of a patch count as +1, the others as -1.
+// Random signs: eight of a patch's sixteen replicates are +1, the others -1.
 std::uint16_t half_of_the_replicates(std::uint64_t seed, std::size_t signing, std::size_t patch) {
   const base::Key key = base::Key(seed, base::Stream::HalfSample, patch).with(signing);
   std::uint32_t bits = 0;
@@ -100,7 +100,7 @@ ObjectFormFactors per_area(const ObjectTable& table, const Areas& areas) {
   o.black = o.sky_std_error = o.black_std_error = o.sky;
   for (std::size_t i = 0; i < n; ++i) {
     if (o.open_area_m2[i] <= 0.0) {
-      if (o.area_m2[i] > 0.0) o.black[i] = 1.0;  // as a covered patch's row
+      if (o.area_m2[i] > 0.0) o.black[i] = 1.0;  // like the row of a covered patch
       continue;
     }
     const double* row = table.row(i);
@@ -153,7 +153,7 @@ void set_std_errors(const std::vector<ObjectTable>& signed_tables,
       double square = 0.0;
       for (const ObjectTable& table : signed_tables) square += table.row(i)[k] * table.row(i)[k];
       double error = std::sqrt(square / double(signed_tables.size())) / area;
-      // Replicates that all found the same, but for rounding: as if one hit were in doubt.
+      // If all replicates agree to rounding, uses the error of one hit.
       const double other = joined && k < n ? rays_per_m2[k] : 0.0;
       const double one_hit = 1.0 / (area * (rays_per_m2[i] + other));
       if (error < 1e-3 * one_hit) error = one_hit;
@@ -162,9 +162,9 @@ void set_std_errors(const std::vector<ObjectTable>& signed_tables,
   }
 }
 
-// Two estimates of a pair that differ by more than their noise have another fault, mostly faces
-// that lie on each other (docs/theory.md, "Faces on each other"). Half their difference is then
-// the error. Returns how many pairs.
+// Two estimates of a pair that differ by more than their noise have another error, mostly from
+// coincident faces (docs/theory.md, "Faces on each other"). Then half their difference is the
+// error. Returns the number of such pairs.
 std::size_t widen_by_disagreement(const ObjectFormFactors& cast, ObjectFormFactors& o) {
   constexpr double errors_apart = 6.0;
   std::size_t pairs = 0;
@@ -214,7 +214,7 @@ ObjectFormFactors object_form_factors_by_rays(const scenes::Scene& scene,
   std::vector<ObjectTable> signed_tables(signings, ObjectTable(objects));
   Areas areas{object_areas(objects, patches, patches.area_m2), {}};
   areas.open = areas.all;
-  // Signed as the tables: how much of each object happened to count as covered.
+  // Signed covered area of each object, like the tables.
   std::vector<std::vector<double>> signed_covered(signings, std::vector<double>(objects, 0.0));
   report = {};
   std::vector<std::uint16_t> halves(signings * patches.count());
@@ -254,17 +254,17 @@ ObjectFormFactors object_form_factors_by_rays(const scenes::Scene& scene,
   report.replicates = static_cast<int>(replicates);
   std::vector<double> rays_per_m2(objects, 0.0);
   for (std::size_t k = 0; k < objects; ++k) {
-    if (areas.open[k] < 1e-12 * areas.all[k]) areas.open[k] = 0.0;  // all of it, to rounding
+    if (areas.open[k] < 1e-12 * areas.all[k]) areas.open[k] = 0.0;  // covered, to rounding
   }
   for (std::uint32_t i = 0; i < patches.count(); ++i) {
     rays_per_m2[patches.object(i)] += report.rays_per_patch;
   }
   for (std::size_t k = 0; k < objects; ++k) {
-    // Rays from covered points do not count: as many a square metre as over the whole.
+    // Rays per open area: rays from covered points do not count.
     rays_per_m2[k] = areas.all[k] > 0.0 ? rays_per_m2[k] / areas.all[k] : 0.0;
   }
   ObjectFormFactors result = per_area(mean, areas);
-  // F = x / a, a = A - covered, which points find: dF = (dx + F dcovered) / a.
+  // F = x / a, where points estimate a = A - covered: dF = (dx + F dcovered) / a.
   base::parallel_chunks(signings, 1, [&](std::size_t b, std::size_t) {
     for (std::size_t i = 0; i < objects; ++i) {
       if (areas.open[i] <= 0.0) continue;

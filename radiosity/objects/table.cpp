@@ -48,20 +48,21 @@ void Reconciliation::apply(ObjectTable& table, bool closes_to_area) const {
     const std::span<const double> variance(variance_.row(i), n + 2), row(table.row(i), n + 2);
     for (std::size_t k = 0; k < n; ++k) matrix(r, static_cast<Eigen::Index>(k)) = variance[k];
     matrix(r, r) = std::accumulate(variance.begin(), variance.end(), 0.0);
-    // Where nothing is known by chance, nothing moves.
+    // Entries without variance are fixed.
     missing[r] = matrix(r, r) > 0.0 ? (closes_to_area ? area_m2_[i] : 0.0) -
                                           std::accumulate(row.begin(), row.end(), 0.0)
                                     : 0.0;
   }
-  // It is positive, and semidefinite only where a closed scene leaves it consistent, which
-  // conjugate gradients do not mind.
+  // The matrix is positive semidefinite, singular only for closed scenes. The equations are then
+  // still consistent, so that conjugate gradients converge.
   Eigen::ConjugateGradient<Eigen::MatrixXd, Eigen::Lower | Eigen::Upper> solver(matrix);
   solver.setTolerance(std::numeric_limits<double>::epsilon());
   solver.setMaxIterations(4 * rows + 20);
   const Eigen::VectorXd l = solver.solve(missing);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t k = 0; k < n + 2; ++k) {
-      // What a row alone is about, itself, the sky and black backs, follows that row alone.
+      // Entries of one row only (the object itself, the sky and black backs) depend on that row
+      // only.
       const double own = l[static_cast<Eigen::Index>(i)];
       const double other = k < n && k != i ? l[static_cast<Eigen::Index>(k)] : 0.0;
       table.row(i)[k] += variance_.row(i)[k] * (own + other);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A table of what objects send each other, A_i F_ij in m^2, and how two estimates of each pair are
-// made to agree.
+// A table of exchanges between objects, A_i F_ij in m^2, and the reconciliation of two estimates of
+// each pair.
 #pragma once
 
 #include <cstddef>
@@ -24,20 +24,17 @@ class ObjectTable {
   std::vector<double> values_;
 };
 
-// The linear steps that make a table of ray-cast estimates reciprocal and closed:
-//   1. x_ij = x_ji = (w_i x_ij + w_j x_ji) / (w_i + w_j), w the rays per area: the variance of A_i
-//   F_ij
-//      is about x / w_i, and weights that do not depend on the hits themselves leave no bias;
-//   2. x_ij += v_ij (l_i + l_j), x_ii += v_ii l_i, x_i,sky += v_i,sky l_i (black backs likewise)
-//   with
-//      l such that sum_j x_ij + x_i,sky + x_i,black = A_i and v the variances: weighted least
-//      squares.
+// Linear steps that make a table of ray-cast estimates reciprocal and closed:
+//   1. x_ij = x_ji = (w_i x_ij + w_j x_ji) / (w_i + w_j), w the rays per area: the variance of
+//      A_i F_ij is about x / w_i, and weights independent of the hits cause no bias;
+//   2. x_ij += v_ij (l_i + l_j), x_ii += v_ii l_i, x_i,sky += v_i,sky l_i (black backs likewise),
+//      l such that sum_j x_ij + x_i,sky + x_i,black = A_i, v the variances: weighted least squares.
 class Reconciliation {
  public:
   Reconciliation(const ObjectTable& estimate, std::span<const double> area_m2,
                  std::span<const double> rays_per_m2);
 
-  // closes_to_area: the rows add up to the areas; false for noise, whose rows add up to nothing.
+  // closes_to_area: the row sums become the areas; false for noise, whose row sums become 0.
   void apply(ObjectTable& table, bool closes_to_area) const;
 
  private:

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The triangles of face clusters (patches.h), in an order in which whatever a cluster is halved
-// into stands together: n triangles are the first n / 2 and the rest, down to one.
+// The triangles of face clusters (patches.h), ordered so that the halves of a cluster are
+// contiguous: n triangles are the first n / 2 and the rest, down to one.
 //
-// The parameter s of a cluster says which triangle, t nothing more: its binary digits, one for each
-// time that the range is halved, lead to the triangle, and what follows is the triangle's own s.
-// So the cells of a cluster are halved, numbered and found as those of any facet; one that holds
-// several triangles is halved along s only, one that holds a lone triangle as that triangle is.
+// The parameter s of a cluster selects the triangle; t has no influence on it. Its leading binary
+// digits, one per bisection of the range, lead to the triangle; the rest is the triangle's own s.
+// Thus the cells of a cluster are halved, numbered and found like cells of any facet. A cell with
+// several triangles is halved along s only, a cell with a single triangle like a triangle.
 #pragma once
 
 #include <array>
@@ -19,7 +19,8 @@ namespace earthshine::radiosity {
 
 inline constexpr std::uint32_t no_member = 0xFFFFFFFFU;
 
-// What a cell of a cluster holds: triangles, or of a lone one the part in its own parameters.
+// Contents of a cluster's cell: several triangles, or part of a single triangle in its own
+// parameters.
 struct ClusterSpan {
   std::uint32_t first = 0, count = 0;  // members
   Rectangle part{0.0, 1.0, 0.0, 1.0};
@@ -29,35 +30,35 @@ struct ClusterSpan {
 struct ClusterMembers {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> corner;  // per member
-  std::vector<std::uint8_t> apex;                    // per member: as of facet()
-  std::vector<std::uint32_t> triangle;               // per member: of the scene
+  std::vector<std::uint8_t> apex;                    // per member, as used by facet()
+  std::vector<std::uint32_t> triangle;               // index in the scene, per member
   std::vector<std::uint32_t> of_triangle;            // per triangle of the scene; no_member: none
-  std::vector<double> area_to;                       // of the members before; one entry more
+  std::vector<double> area_to;                       // area before each member, and in total
 
-  // The triangle as a facet of one cell.
+  // The triangle as a facet with one cell.
   [[nodiscard]] Facet facet(std::uint32_t member) const;
   [[nodiscard]] double area(const ClusterSpan& span) const;
-  // The unit normal of the mean of the triangles, by area.
+  // Unit vector of the area-weighted mean normal.
   [[nodiscard]] Vec3 normal(const ClusterSpan& span) const;
 
-  // The triangle that x in [0, 1] falls on, each as wide as its area; x becomes the place in it.
+  // Selects a triangle by x in [0, 1], in proportion to area; x becomes the position in it.
   [[nodiscard]] std::uint32_t pick(const ClusterSpan& span, double& x) const;
 
-  // Parameters in the cluster of a place in the triangle's own.
+  // Converts a triangle's own parameters to the cluster's.
   [[nodiscard]] Parameters parameters(const Facet& cluster, std::uint32_t member,
                                       Parameters own) const;
 
-  // Of a rectangle about the mean normal that has all triangles over it; counter-clockwise.
+  // A rectangle normal to the mean normal below all triangles; counter-clockwise.
   [[nodiscard]] std::array<Vec3, 4> corners(const ClusterSpan& span) const;
   [[nodiscard]] std::pair<Vec3, Vec3> box(const ClusterSpan& span) const;
 };
 
-// The corner opposite the shortest edge, the first of those.
+// The corner opposite the shortest edge; if several, the first one.
 [[nodiscard]] std::uint8_t apex_of(const std::array<Vec3, 3>& corners);
-// The triangle as a facet, uncut.
+// The triangle as an undivided facet.
 [[nodiscard]] Facet facet_of_triangle(const Vec3& p0, const Vec3& p1, const Vec3& p2);
 
-// Lengths of the edges along a and along t, by which facets of triangles are cut.
+// Lengths of the edges along a and along t, which determine the division of triangular facets.
 struct TriangleLengths {
   double s_m, t_m;
 };

@@ -15,10 +15,10 @@ namespace {
 
 constexpr float normal_span = 0.19F;
 constexpr double crease_cosine = 0.92388;
-// Deeper, too few digits of the parameter would be left for the triangles themselves.
+// A deeper tree would leave too few digits of the parameter for the triangles themselves.
 constexpr std::size_t most = std::size_t{1} << 16;
 
-// A small triangle: its middle in units of the wanted edge, and its normal in units of the span.
+// A small triangle: its centre in units of the wanted edge, and its normal in units of the span.
 struct Small {
   std::array<float, 6> at;
   std::uint32_t triangle;
@@ -26,7 +26,7 @@ struct Small {
 
 using Range = std::pair<std::size_t, std::size_t>;
 
-// The axis along which the range is longest, and where it begins there.
+// The axis with the largest range, and its lower bound.
 struct Longest {
   std::size_t axis;
   float low, extent;
@@ -47,7 +47,7 @@ Longest longest(const std::vector<Small>& all, const Range& range) {
   return found;
 }
 
-// Small triangles in parts that hang together.
+// Connected regions of small triangles.
 class Regions {
  public:
   Regions(const scenes::Scene& scene, double edge_m) : scene_(scene) {
@@ -55,7 +55,7 @@ class Regions {
     for (const scenes::Material& m : scene.materials) {
       fits.push_back(!m.passes_light_on() && !m.lets_light_through() ? 1 : 0);
     }
-    const double most_m2 = 2.0 * edge_m * edge_m;  // half of a square of that edge
+    const double most_m2 = 2.0 * edge_m * edge_m;  // half of a square with this edge
     const scenes::CoincidentFaces coincident(scene);
     const auto is_covered = [&](std::uint32_t t) {
       return coincident.is_covered(t, true) || coincident.is_covered(t, false);
@@ -73,7 +73,7 @@ class Regions {
     }
   }
 
-  // Sorts them by region, and gives where each starts.
+  // Sorts triangles by region and returns the ranges.
   [[nodiscard]] std::vector<Range> sort() {
     std::vector<Range> ranges;
     if (all_.size() < 2) return ranges;
@@ -108,7 +108,7 @@ class Regions {
     return cosine * double(normal_span) * double(normal_span) >= crease_cosine;
   }
 
-  // Edges stand by their lower vertex; of each, the triangles that have the other one too.
+  // Buckets edges by their lower vertex; each lists triangles with the other vertex.
   void find_parts() {
     parent_.resize(all_.size());
     std::iota(parent_.begin(), parent_.end(), 0U);
@@ -151,8 +151,8 @@ class Regions {
   std::vector<std::uint32_t> parent_;
 };
 
-// Parts the range into clusters: into as many of like length as it has wanted edges, half of them
-// on each side.
+// Divides the range into clusters: into as many equal intervals as it has wanted edges, half of
+// them on each side.
 void part(std::vector<Small>& all, const Range& range, std::vector<Range>& clusters) {
   const std::size_t count = range.second - range.first;
   if (count < 2) return;
@@ -165,14 +165,14 @@ void part(std::vector<Small>& all, const Range& range, std::vector<Range>& clust
   const auto begin = all.begin() + std::ptrdiff_t(range.first),
              end = all.begin() + std::ptrdiff_t(range.second);
   auto at = std::partition(begin, end, [&](const Small& s) { return s.at[of.axis] < middle; });
-  // Many at one place.
+  // Many triangles at one place.
   if (at == begin || at == end) at = begin + std::ptrdiff_t(count / 2);
   const auto cut = static_cast<std::size_t>(at - all.begin());
   part(all, {range.first, cut}, clusters);
   part(all, {cut, range.second}, clusters);
 }
 
-// Down to single triangles, by halves.
+// Orders the range down to single triangles, by halves.
 void order(std::vector<Small>& all, const Range& range) {
   const std::size_t count = range.second - range.first;
   if (count < 3) return;
@@ -198,7 +198,7 @@ Clusters find_clusters(const scenes::Scene& scene, double edge_m, Members wanted
   std::vector<Small> all = regions.take();
   std::vector<Range> clusters;
   for (const Range& range : parts) part(all, range, clusters);
-  // The halves of one quadrilateral are a facet as they are.
+  // The halves of one quadrilateral already form a facet.
   std::erase_if(clusters, [&](const Range& range) {
     const auto polygon = [&](std::size_t k) { return scene.triangles[all[k].triangle].polygon; };
     return range.second - range.first == 2 && polygon(range.first) == polygon(range.first + 1);

@@ -11,7 +11,7 @@ namespace earthshine::radiosity {
 namespace {
 
 constexpr double least_share = 1e-4;  // of the cell, on either side
-constexpr double least_reach = 0.25;  // of the line's way through the cell, that the wall stands on
+constexpr double least_reach = 0.25;  // share of the line's length in the cell that the wall covers
 constexpr double opposite = -0.5;     // cosine
 constexpr int most_cuts_deep = 8;
 constexpr double rounding = 1e-12;  // of the cell's area
@@ -26,8 +26,8 @@ double area_of(const Polygon& p) {
   return 0.5 * twice;
 }
 
-// Without corners that are none: a line through a corner of a polygon leaves it twice, and a part
-// with nothing between three corners would have no area to send light from.
+// Removes degenerate corners: a line through a corner would cross the polygon twice, and a part
+// with collinear corners would have no area.
 Polygon with_corners(const Polygon& polygon, double least_area) {
   Polygon kept;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
@@ -47,7 +47,7 @@ struct Line {
   [[nodiscard]] double beyond(const PlanePoint& p) const { return glm::dot(way, p) - reach; }
 };
 
-// What is beyond the line, and what is not.
+// Parts beyond the line and before it.
 std::array<Polygon, 2> halves(const Polygon& polygon, const Line& line) {
   std::array<Polygon, 2> sides;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
@@ -61,7 +61,7 @@ std::array<Polygon, 2> halves(const Polygon& polygon, const Line& line) {
   return sides;
 }
 
-// From where to where, in units of to - from, the line through both is within the polygon.
+// Interval, in units of to - from, in which the line through both is inside the polygon.
 std::optional<std::pair<double, double>> within(const Polygon& polygon, const PlanePoint& from,
                                                 const PlanePoint& to) {
   double low = -std::numeric_limits<double>::infinity(), high = -low;
@@ -80,13 +80,13 @@ class Parting {
  public:
   Parting(std::span<const Trace> traces, double area) : traces_(traces), area_(area) {}
 
-  // The side of a node that the polygon is.
+  // Adds the polygon as one side of a node and returns its index.
   std::int32_t part(const Polygon& whole, int depth = 0) {
     Polygon polygon = with_corners(whole, rounding * area_);
     const std::optional<Line> line = depth < most_cuts_deep ? best(polygon) : std::nullopt;
     if (line) return node(*line, halves(polygon, *line), depth + 1);
     if (polygon.size() > 4) {
-      // Patches have four corners at most.
+      // Patches have at most four corners.
       const std::size_t half = polygon.size() / 2;
       const PlanePoint along = polygon[half] - polygon[0];
       const PlanePoint way{-along.y, along.x};
@@ -117,7 +117,7 @@ class Parting {
     return static_cast<std::int32_t>(at);
   }
 
-  // The line of the wall that takes up most of its way through the polygon.
+  // The line of the wall that covers the largest share of its length in the polygon.
   [[nodiscard]] std::optional<Line> best(const Polygon& polygon) const {
     std::optional<Line> line;
     double most = least_reach;
@@ -133,7 +133,7 @@ class Parting {
     return line;
   }
 
-  // Of the line's way through the polygon, what the wall takes up.
+  // Share of the line's length in the polygon that the wall covers.
   static double share_of(const Polygon& polygon, const Trace& trace) {
     const auto in = within(polygon, trace.from, trace.to);
     if (!in) return 0.0;

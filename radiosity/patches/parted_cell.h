@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cells that walls stand on or pierce, parted along them: what is on one side of a wall has a patch
-// of its own, so that the light of one room stays out of the other.
+// Divides cells along walls that stand on or pierce them: each side of a wall has its own patch, so
+// that the light of one room does not leak into the other.
 #pragma once
 
 #include <cstdint>
@@ -11,25 +11,25 @@
 
 namespace earthshine::radiosity {
 
-// Where a wall meets the plane of a facet.
+// Intersection of a wall with the plane of a facet.
 struct Trace {
   PlanePoint from, to;
-  // Points with way . p >= reach are before the wall, where it has a back.
+  // Points with way . p >= reach are in front of the wall, if it is one-sided.
   PlanePoint way;
   double reach;
-  Vec3 front;  // unit, in the facet's plane: where the wall's front looks
-  // Of a closed body: what is behind is covered, unless the body ends there, and needs no patch.
+  Vec3 front;  // unit, in the facet's plane: direction of the wall's front
+  // Of a closed body: its inside is covered, unless the body ends there, and needs no patch.
   bool of_body;
 };
 
-// By facet.
+// Traces by facet.
 class Traces {
  public:
   explicit Traces(std::vector<std::vector<Trace>> by_facet);
 
   [[nodiscard]] bool any() const { return any_; }
   [[nodiscard]] bool any(std::uint32_t facet) const { return !of_[facet].empty(); }
-  // Replaces `found` by those that may meet the cell, in their order.
+  // Replaces `found` by the traces that may meet the cell, in order.
   void near(std::uint32_t facet, const Outline& cell, std::vector<Trace>& found) const;
 
  private:
@@ -37,22 +37,23 @@ class Traces {
   bool any_ = false;
 };
 
-// The nodes refer to each other by their number here. No outlines: the cell stays whole.
+// Nodes refer to each other by index. Without outlines the cell stays whole.
 struct PartedCell {
   std::vector<PartNode> nodes;
   std::vector<Outline> outlines;
 };
 
-// Of a whole cell. A wall parts it, by its line, if it takes up a quarter of that line's way
-// through and leaves a ten thousandth of the cell on either side; a body's side only if another
-// that looks the opposite way is behind it: a thin wall, both of whose sides have light.
+// Divides a whole cell. A wall divides it, along its line, if it covers a quarter of the line's
+// length in the cell and leaves at least a ten-thousandth of the cell on either side. A body's side
+// divides it only if another side with the opposite orientation is behind it: a thin wall, lit on
+// both sides.
 [[nodiscard]] PartedCell part_cell(const Facet& facet, const Cell& cell,
                                    std::span<const Trace> traces);
 
-// To part_nodes and outlines.
+// Appends to part_nodes and outlines.
 void append(Patches& patches, const PartedCell& parted);
 
-// What Patches::find gives for a hit of a ray along `way`, moved back by back_m along it: at the
+// Patch of a ray's hit, as Patches::find, after moving the hit back by back_m along `way`: at the
 // foot of a wall rounding may have put the hit behind the wall.
 [[nodiscard]] std::uint32_t find_before(const Patches& patches, const TrianglePlace& hit,
                                         bool front, const Vec3& way, double back_m);

@@ -14,16 +14,16 @@ namespace {
 
 constexpr std::uint64_t most_cells = std::uint64_t{1} << 26;
 constexpr std::uint32_t deepest_level = 31;
-constexpr std::uint32_t last_row = 0x7FFFFFFFU;  // that can be halved in 32 bits
-// Many areas are summed one after the other.
+constexpr std::uint32_t last_row = 0x7FFFFFFFU;  // largest row that can be halved in 32 bits
+// Rounding error of sums over many areas.
 constexpr double area_rounding = 1e-7;
 
 void demand(bool holds, const char* otherwise) {
   if (!holds) throw std::invalid_argument(otherwise);
 }
 
-// The leaves of a facet in the order of their numbers. `used` marks the entries of the tree that
-// some facet has led through, so that no two share a pair and none runs in a circle.
+// Reads the leaves of a facet in the order of their numbers. `used` marks visited tree entries, so
+// that no two facets share a pair and no path is cyclic.
 class Leaves {
  public:
   Leaves(Patches& patches, std::uint32_t number, std::vector<bool>& used)
@@ -86,7 +86,7 @@ class Leaves {
     }
   }
 
-  // The walls of the scene say where the parts are.
+  // The scene's walls define the parts.
   void take_parts(std::uint64_t at, const Cell& cell) {
     demand(at + 2 <= tree_.size() && !used_[at] && !used_[at + 1],
            "the tree leads out of the table");
@@ -151,7 +151,7 @@ PatchLayout layout_of(const Patches& patches) {
 }
 
 Patches rebuild_patches(const scenes::Scene& scene, PatchLayout layout, const FindTraces& walls) {
-  // Facets without a cut give the geometry.
+  // Undivided facets supply the geometry.
   Patches patches =
       subdivide(scene, std::numeric_limits<double>::infinity(), layout.cluster_edge_m);
   const std::size_t facets = patches.facets.size();

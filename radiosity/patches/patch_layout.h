@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the facets are cut, without the geometry, which the scene gives: what a file keeps of
-// Patches, and what is believed of it.
+// Division of facets without the geometry, which the scene supplies: stored in files and validated
+// when read.
 #pragma once
 
 #include <cstdint>
@@ -23,12 +23,12 @@ struct PatchLayout {
 
 [[nodiscard]] PatchLayout layout_of(const Patches& patches);
 
-// The walls on the facets: asked for where cells are parted along them.
+// Computes the walls on facets, when divided cells need them.
 using FindTraces = std::function<Traces(const scenes::Scene&, const Patches&)>;
 
-// The patches of that layout. Throws std::invalid_argument, saying what is wrong, unless every
-// patch belongs to exactly one leaf of one side, every leaf is reached once, and areas add up to
-// their facets'.
+// Builds the patches of the layout. Throws std::invalid_argument with the reason unless every patch
+// belongs to exactly one leaf of one side, every leaf is reached once, and areas add up to their
+// facets' areas.
 [[nodiscard]] Patches rebuild_patches(const scenes::Scene& scene, PatchLayout layout,
                                       const FindTraces& walls = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far off a patch rays start that leave it.
+// Offset of rays that leave a patch.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@
 
 namespace earthshine::radiosity {
 
-// m; of several triangles the largest (scenes/surface_offset.h).
+// m; for several triangles the maximum (scenes/surface_offset.h).
 [[nodiscard]] double patch_offset_m(const Patches& patches, const scenes::RayQuery& query,
                                     std::uint32_t patch);
 
-// Where a ray starts that leaves a point of a patch.
+// Start of a ray that leaves a point of a patch.
 [[nodiscard]] inline Vec3 lifted(const SurfacePoint& from, const scenes::RayQuery& query) {
   return from.position + query.offset_m(from.triangle) * from.normal;
 }

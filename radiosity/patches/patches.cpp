@@ -15,7 +15,7 @@ Vec3 on_facet(const Facet& f, double s, double t) {
   return f.corner + s * (f.a + t * (f.b - f.a));
 }
 
-// Uniform in area: that of a triangle grows with s^2.
+// Uniform in area: a triangle's area grows with s^2.
 Parameters parameters_at(const Facet& f, const Rectangle& r, double x, double y) {
   const double t = r.t0 + y * (r.t1 - r.t0);
   if (f.parallelogram) return {r.s0 + x * (r.s1 - r.s0), t};
@@ -30,8 +30,8 @@ Parameters in_triangle(std::uint8_t apex, double u, double v) {
   return {s, s > 0.0 ? wb / s : 0.0};
 }
 
-// Points of a part keep off its edges, where rounding could put them behind the walls there: by
-// this share of their way to its middle, and where it is narrow by more, up to half of it.
+// Points of a part are inset from its edges, where rounding could put them behind the walls: by
+// this share of their distance to its middle, and more in narrow parts, up to half of it.
 constexpr double part_inset = 1e-4;
 constexpr double rounding = 0x1p-20;  // of single precision, over the facet's size and place
 
@@ -44,7 +44,7 @@ Parameters from_plane(const Facet& f, const PlanePoint& p) {
   return {s, s > 0.0 ? p.y / s : 0.0};
 }
 
-// Uniform in the area of a part, but for its edges.
+// Uniform in the inset area of a part.
 PlanePoint in_outline(const Facet& f, const Outline& o, double x, double y) {
   const auto area = [&](std::size_t b, std::size_t c) {
     const PlanePoint u = o[b] - o[0], v = o[c] - o[0];
@@ -66,7 +66,7 @@ PlanePoint in_outline(const Facet& f, const Outline& o, double x, double y) {
   return p + inset * (0.25 * (o[0] + o[1] + o[2] + o[3]) - p);
 }
 
-// The facet, or the triangle of a cluster, that holds the point (x, y) of a patch.
+// The facet, or the triangle of a cluster, that contains the point (x, y) of a patch.
 struct Holder {
   Facet facet;
   Parameters where;
@@ -82,7 +82,7 @@ Holder holder_of(const Patches& patches, std::uint32_t patch, double x, double y
   return {member, parameters_at(member, span.part, x, y)};
 }
 
-// Along each way of a patch: one to a texel, within these bounds.
+// Samples per direction of a patch: one per texel, within these bounds.
 constexpr int fewest_samples = 24, most_samples = 96;
 
 using ColourAt = Rgb (*)(const scenes::Scene&, const scenes::Material&,
@@ -99,7 +99,7 @@ Rgb mean_over(const scenes::Scene& scene, const Patches& patches, std::uint32_t 
   int there = 0;
   for (int i = 0; i < samples; ++i) {
     for (int j = 0; j < samples; ++j) {
-      // Each row a little further along, so that the samples are in step with no pattern.
+      // Rows are offset by the golden ratio, so that samples do not align with patterns.
       const double y = (j + 0.5) / samples;
       const double x = (i + glm::fract(0.5 + j * 0.6180339887498949)) / samples;
       const TrianglePlace at = patches.on_triangle(patch, x, y);
@@ -110,7 +110,7 @@ Rgb mean_over(const scenes::Scene& scene, const Patches& patches, std::uint32_t 
       ++there;
     }
   }
-  // Of a patch that is one hole the rays find out; a colour it has all the same.
+  // A patch that is one hole still gets a colour; rays detect the hole.
   return there > 0 ? sum / double(there) : with_holes / double(samples * samples);
 }
 

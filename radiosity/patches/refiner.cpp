@@ -8,14 +8,14 @@ namespace earthshine::radiosity {
 namespace {
 
 constexpr double thinnest = 4.0;          // a cell longer than this times its width is halved
-constexpr double kept_by_halves = 0.5;    // of a patch's part: an edge of shadow crosses one of two
-constexpr double undirected_share = 0.1;  // of the error, counted toward the longer side
+constexpr double kept_by_halves = 0.5;    // of the error: a shadow's edge crosses one half
+constexpr double undirected_share = 0.1;  // of the error, added to the longer side
 
 struct CutCandidate {
   std::uint32_t patch;  // the front side
   Cut cut;
   double error;    // of both sides
-  double urgency;  // error per patch that the cut adds
+  double urgency;  // error per added patch
 };
 
 std::uint32_t other_side(const Patches& patches, std::uint32_t patch) {
@@ -25,8 +25,8 @@ std::uint32_t other_side(const Patches& patches, std::uint32_t patch) {
                                      : patch - facet.first_front + facet.first_back;
 }
 
-// Along which side a cell is halved: where more of the error goes away, unless that would make it
-// long and thin. Where the samples show no direction (a spot, a thin shadow), the longer side.
+// Direction of the division: the one that removes more error, unless the cells would be long and
+// thin. If the samples show no direction (a spot, a thin shadow), divides the longer side.
 Cut best_cut(const Patches& patches, std::uint32_t patch, const Unevenness& uneven) {
   const bool s_can = can_cut(patches, patch, Cut::S), t_can = can_cut(patches, patch, Cut::T);
   if (!s_can || !t_can) return s_can ? Cut::S : t_can ? Cut::T : Cut::None;
@@ -53,7 +53,7 @@ std::size_t count_after(const Patches& patches, const std::vector<Cut>& wanted) 
   return count;
 }
 
-// Those that hold an error and can be halved, the most urgent first.
+// Patches with an error that can be halved, the most urgent first.
 std::vector<CutCandidate> worst_first(const Patches& patches, std::span<const Unevenness> uneven) {
   std::vector<CutCandidate> candidates;
   for (std::uint32_t i = 0; i < patches.count(); ++i) {
@@ -76,7 +76,7 @@ std::vector<CutCandidate> worst_first(const Patches& patches, std::span<const Un
   return candidates;
 }
 
-// The first `count` of them, graded; fewer where more than `most` patches would result.
+// Divides the first `count` candidates, graded; fewer if more than `most` patches would result.
 std::vector<Cut> cuts_within(const Patches& patches, std::span<const CutCandidate> candidates,
                              std::size_t count, std::size_t most) {
   std::vector<Cut> wanted = marked(patches, candidates.first(count));

@@ -10,7 +10,7 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr std::uint64_t most_cells_a_side = std::uint64_t{1} << 20;  // of a facet
+constexpr std::uint64_t most_cells_a_side = std::uint64_t{1} << 20;  // per side of a facet
 
 constexpr std::uint8_t most_digits = 30;  // of the parameter s of a cluster
 
@@ -33,7 +33,7 @@ Cell half_of(Cell cell, Cut cut, std::uint32_t half) {
   return cell;
 }
 
-// The new cells of one facet after the other.
+// Creates the new cells facet by facet.
 class Cutter {
  public:
   Cutter(const Patches& old, const std::vector<Cut>& wanted) : old_(old), wanted_(wanted) {
@@ -81,7 +81,7 @@ class Cutter {
     std::uint32_t parent;  // leaf of the old facet
   };
 
-  // As any of `count` leaves wants it: the parts of one cell.
+  // The request of any of `count` leaves, the parts of one cell.
   [[nodiscard]] Cut cut_of(std::uint32_t leaf, std::uint32_t count = 1) const {
     Cut cut = Cut::None;
     for (const std::uint32_t first : {facet_->first_front, facet_->first_back}) {
@@ -99,7 +99,7 @@ class Cutter {
     return false;
   }
 
-  // The old entry's cell goes to `slot` of the new tree, halved if it is a leaf that is wanted.
+  // Copies the old entry's cell to `slot` of the new tree, halved if requested.
   void place(std::uint32_t entry, const Cell& cell, std::uint32_t slot) {
     std::vector<std::uint32_t>& tree = result_.patches.tree;
     const bool was_parted = (entry & Patches::parted_cell) != 0;
@@ -131,7 +131,8 @@ class Cutter {
     return cut_of(first, count);
   }
 
-  // The cell, or its parts, at `slot` of the new tree. `entry`: of the old cell that holds it.
+  // Adds the cell, or its parts, at `slot` of the new tree. `entry`: of the old cell that contains
+  // it.
   void add_leaf(const Cell& cell, std::uint32_t entry, std::uint32_t slot) {
     std::vector<std::uint32_t>& tree = result_.patches.tree;
     const auto first = static_cast<std::uint32_t>(leaves_.size());
@@ -161,7 +162,7 @@ class Cutter {
     return part_cell(*facet_, cell, near_);
   }
 
-  // The old leaf that holds the middle of a cell, or of a part of it.
+  // The old leaf that contains the middle of a cell or part.
   [[nodiscard]] std::uint32_t parent_of(std::uint32_t entry, const Cell& cell,
                                         const Outline* part) const {
     if ((entry & Patches::parted_cell) == 0) return entry;
@@ -186,7 +187,7 @@ class Cutter {
   const Patches& old_;
   const std::vector<Cut>& wanted_;
   const Facet* facet_ = nullptr;
-  std::uint32_t number_ = 0;  // of the facet
+  std::uint32_t number_ = 0;  // index of the facet
   bool has_walls_ = false;
   std::vector<Trace> near_;
   std::vector<Leaf> leaves_;
@@ -217,7 +218,7 @@ void grade(const Patches& patches, std::vector<Cut>& wanted) {
     const std::uint32_t patch = queue.back();
     queue.pop_back();
     const Facet& facet = patches.facets[patches.facet[patch]];
-    // No cell has been cut more often than another, or which ones are neighbours is not known.
+    // Without a tree all cells have equal size; cells of clusters have no known neighbours.
     if (facet.tree == no_tree || facet.is_cluster()) continue;
     const Rectangle r = patches.rectangle(patch);
     const double ds = 0.25 * (r.s1 - r.s0), dt = 0.25 * (r.t1 - r.t0);
@@ -225,7 +226,7 @@ void grade(const Patches& patches, std::vector<Cut>& wanted) {
     const auto cuts = [&](std::uint32_t i) {
       return wanted[patch] == Cut::S ? patches.cell[i].s_cuts : patches.cell[i].t_cuts;
     };
-    // Two on each side: a neighbour is at least half as wide.
+    // Two points on each side: a neighbour has at least half the width.
     const std::array<Parameters, 8> beside{{{r.s0 - ds, r.t0 + dt},
                                             {r.s0 - ds, r.t1 - dt},
                                             {r.s1 + ds, r.t0 + dt},
@@ -266,7 +267,7 @@ CellSize cell_size(const Patches& patches, std::uint32_t patch) {
     return std::max(glm::length(c[static_cast<std::size_t>(a)] - c[static_cast<std::size_t>(b)]),
                     glm::length(c[static_cast<std::size_t>(d)] - c[static_cast<std::size_t>(e)]));
   };
-  // corners() runs from s0 t0 along s first, on a back along t first.
+  // corners() begins at s0 t0 and goes along s first, on a back along t first.
   const double first = longest(0, 1, 3, 2), second = longest(1, 2, 0, 3);
   return patches.is_back[patch] != 0 ? CellSize{second, first} : CellSize{first, second};
 }

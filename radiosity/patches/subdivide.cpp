@@ -13,14 +13,13 @@ namespace {
 constexpr std::uint64_t most_patches = std::uint64_t{1} << 26;
 
 std::uint32_t divisions(double length_m, double edge_m) {
-  // A length that is a whole number of edges up to rounding is not cut once more. One cut more
-  // often than there may be patches is refused by their number, which must not be more than a
-  // number holds.
+  // A length of an integer number of edges, to rounding, is not divided once more. The limit
+  // prevents integer overflow; the later check of the number of patches rejects such divisions.
   const double count = std::ceil(length_m / edge_m - 1e-9);
   return static_cast<std::uint32_t>(std::clamp(count, 1.0, most_patches + 1.0));
 }
 
-// Triangles k and k + 1 are the halves (0,1,2), (0,2,3) of a parallelogram.
+// Whether triangles k and k + 1 are the halves (0,1,2), (0,2,3) of a parallelogram.
 bool forms_parallelogram(const scenes::Scene& scene, std::size_t k) {
   if (k + 1 >= scene.triangles.size()) return false;
   const scenes::Triangle& first = scene.triangles[k];
@@ -62,8 +61,8 @@ Facet triangle_facet(const scenes::Scene& scene, std::size_t k, double edge_m) {
   return facet;
 }
 
-// Calls take(facet) for every facet, those of the scene in its order and then the clusters, its
-// patches numbered, and gives their number.
+// Calls take(facet) for every facet in scene order, then for the clusters, with numbered patches.
+// Returns the number of patches.
 template <class Take>
 std::uint64_t for_each_facet(const scenes::Scene& scene, double edge_m, const Clusters& clusters,
                              Take take) {

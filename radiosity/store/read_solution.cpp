@@ -33,7 +33,7 @@ void demand_finite(const Hdf5Reader& file, const char* name, const std::vector<N
 struct Reading {
   const Hdf5Reader& file;
   std::size_t facets, tree, patches, groups;
-  const void* sized = nullptr;  // the records last sized
+  const void* sized = nullptr;  // records that were resized last
 
   template <class T>
   void column(const char* name, std::vector<T>& values, const Hdf5Shape& shape, const char*,
@@ -44,8 +44,7 @@ struct Reading {
   template <class Record, class T>
   void rows(const char* name, std::vector<Record>& records, T Record::*member, const char*,
             const char*) {
-    // The first member that is read of its records says how many there are; the others agree with
-    // it.
+    // The first member read determines the number of records; the others must agree.
     const auto resize = [&](std::size_t count) {
       if (sized != &records) records.assign(count, Record{});
       sized = &records;
@@ -139,7 +138,7 @@ void refuse_stale(const Hdf5Reader& file, const SolutionOrigin& origin) {
 }  // namespace
 
 Solution read_solution(const std::filesystem::path& path, const SolutionOrigin& origin) {
-  std::error_code other;  // such as no permission, which is said below
+  std::error_code other;  // such as no permission, which is reported below
   if (!std::filesystem::exists(path, other) && !other) {
     throw Error(Blame::Input, path.string(), "there is no such file", {},
                 fmt::format("Make it with \"earthshine solve {} -o {}\"",

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one list of what a solution file holds of a Solution and its report; writing and reading both
-// walk it. What is visited is const when it is written. A Store has
-//   facets, tree, patches, groups                          how many there are
+// The contents of a solution file: one list of the members of a Solution and its report, used for
+// reading and writing. Members are const when written. A Store has
+//   facets, tree, patches, groups                          their numbers
 //   column(name, std::vector<T>&, shape, unit, meaning)     numbers
 //   rows(name, records, member, unit, meaning)              one member of every record
 //   value(name, T&)                                         an attribute of the file
-//   optional(name, double&)                                 the same, left out where it is 0
+//   optional(name, double&)                                 an attribute that is omitted if 0
 #pragma once
 
 #include "radiosity/patches/patch_layout.h"

@@ -14,7 +14,7 @@ namespace {
 using base::Hdf5Shape;
 using base::Hdf5Writer;
 
-// Rgb as three numbers, counts as 64 bits; texts and numbers as they are.
+// Rgb is stored as three numbers, counts as 64 bits; texts and numbers unchanged.
 template <class T>
 constexpr std::size_t width = 1;
 template <>
@@ -65,7 +65,7 @@ struct Writing {
   }
 };
 
-// What a reader wants to have at hand and the program can tell from the rest.
+// Derived data for other readers, which this program recomputes.
 void write_geometry(Hdf5Writer& file, const Patches& patches) {
   const std::size_t count = patches.count();
   std::vector<float> corners, normals;

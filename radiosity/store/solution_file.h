@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A solution as an HDF5 file: written once, read in place of another solve, opened by numpy.
-// docs/scene-format.md lists its data sets; what it must agree with stands in solution_key.h.
+// A solution as an HDF5 file: written once, read instead of a new solve, readable by numpy.
+// docs/scene-format.md lists its data sets; solution_key.h defines its validity.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,27 @@
 
 namespace earthshine::radiosity {
 
-// Raised whenever the file's layout changes.
+// Increased with every change of the file's layout.
 inline constexpr std::uint64_t solution_format = 3;
 
-// What a solution was or would be found from.
+// Input of a solution.
 struct SolutionOrigin {
   const scenes::Scene& scene;
   const scenes::LightGroups& groups;
   const SolveOptions& options;
-  std::string program;  // its version: another one may find other numbers
+  std::string program;  // version: other versions may give other numbers
 };
 
-// Written aside and renamed. The same solution gives the same bytes: stage times are left out.
-// Throws base::Error as base::write_text does.
+// Writes a temporary file and renames it. The same solution gives the same bytes: stage times are
+// omitted. Throws base::Error as base::write_text does.
 void write_solution(const std::filesystem::path& path, const Solution& solution,
                     const SolutionOrigin& origin);
 
 // The bytes of that file.
 [[nodiscard]] std::string solution_bytes(const Solution& solution, const SolutionOrigin& origin);
 
-// Bit for bit what was written, but for the stage times. Throws base::Error (Input) if the file is
-// damaged, or stale: then the message names every part that differs.
+// Exactly the written solution, except stage times. Throws base::Error (Input) if the file is
+// damaged, or if it is stale; the message then names every part that differs.
 [[nodiscard]] Solution read_solution(const std::filesystem::path& path,
                                      const SolutionOrigin& origin);
 

@@ -12,8 +12,8 @@ namespace {
 using base::Digest;
 using scenes::Scene;
 
-// Below, structures are taken apart whole: one that gets another member does not compile until it
-// is decided whether that member belongs in the digest.
+// Structured bindings below list all members: a new member does not compile until it is decided
+// whether it belongs in the digest.
 
 std::uint64_t geometry(const Scene& scene) {
   Digest digest;
@@ -37,8 +37,8 @@ std::uint64_t geometry(const Scene& scene) {
   return digest.value();
 }
 
-// Of what every triangle wears, in order: materials that nothing wears do not count, nor does the
-// order in which the file lists them.
+// Digest over the materials of all triangles, in order: unused materials and the order in the file
+// do not matter.
 template <class Part>
 std::uint64_t of_worn(const Scene& scene, Part part) {
   std::vector<std::uint64_t> parts;
@@ -175,7 +175,7 @@ std::vector<SolveKnob> solve_knobs(const SolveOptions& options) {
        start_edge_m},
       {"max_patches", "quality.max_patches", std::uint64_t{max_patches}},
       {"refine_error", "quality.error of the patches", error}};
-  // Files that keep none are of the whole number.
+  // Files without the value used the default.
   if (flux_rays != SolveOptions().flux_rays) {
     knobs.push_back({"flux_rays", "the rays from each lamp, by quality.error",
                      static_cast<std::uint64_t>(flux_rays)});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a solution depends on, in parts that can be told apart: a stored one serves as long as all
-// of them are the same. Cameras, CCTV, gather rays, the Phong lobe, names and the ambient term's
-// radiance are in none: radiosity does not read them.
+// Input of a solution, in separate parts: a stored solution is valid while all parts are equal.
+// Cameras, CCTV, gather rays, the Phong lobe, names and the ambient term's radiance are excluded:
+// the radiosity does not depend on them.
 #pragma once
 
 #include <cstdint>
@@ -15,18 +15,18 @@ namespace earthshine::radiosity {
 
 // A digest of one part of the scene.
 struct ScenePart {
-  std::string key;    // its name in a file
-  std::string words;  // what a message calls it
+  std::string key;    // name in the file
+  std::string words;  // name in messages
   std::uint64_t digest = 0;
 };
-// Geometry, materials (what they reflect and pass on), lights (lamps, emitting surfaces and how
-// they are grouped), sky (Sun and Earth).
+// Geometry, materials (reflection and transmission), lights (lamps, emitting surfaces and their
+// grouping), sky (Sun and Earth).
 [[nodiscard]] std::vector<ScenePart> scene_parts(const scenes::Scene& scene,
                                                  const scenes::LightGroups& groups);
 
 struct SolveKnob {
   std::string key;
-  std::string words;  // how the user sets it
+  std::string words;  // the user's name of the setting
   std::variant<double, std::uint64_t> value;
 };
 [[nodiscard]] std::vector<SolveKnob> solve_knobs(const SolveOptions& options);

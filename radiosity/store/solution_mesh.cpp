@@ -16,8 +16,8 @@ constexpr double middle_grey = 0.18;
 constexpr double least_lit = 1e-5;        // of the brightest patch
 constexpr double clipped_at_most = 0.05;  // of the area
 constexpr double smooth_cosine = 0.766;
-constexpr double same_place = 1e7;  // steps over the scene's extent
-// Where more patches meet, such as at the pole of a finely cut sphere, comparing all pairs would
+constexpr double same_place = 1e7;  // grid steps over the scene's extent
+// If more patches meet, such as at the pole of a finely divided sphere, comparing all pairs would
 // take long; each then keeps its own colour.
 constexpr std::size_t most_meeting = 256;
 
@@ -34,7 +34,7 @@ std::vector<Rgb> whole_radiosity(const scenes::Scene& scene, const Solution& sol
   return sums;
 }
 
-// The luminance that all but `share` of the area stay below.
+// The luminance above which only `share` of the area lies.
 double upper_luminance(const std::vector<double>& luminance, const std::vector<double>& area_m2,
                        double share) {
   std::vector<std::size_t> order(luminance.size());
@@ -49,7 +49,7 @@ double upper_luminance(const std::vector<double>& luminance, const std::vector<d
   return 0.0;
 }
 
-// What becomes 1; 0 when nothing is lit.
+// Radiosity that is displayed as 1; 0 if nothing is lit.
 double exposure(const std::vector<Rgb>& radiosity, const std::vector<double>& area_m2) {
   std::vector<double> luminance;
   luminance.reserve(radiosity.size());
@@ -66,8 +66,8 @@ double exposure(const std::vector<Rgb>& radiosity, const std::vector<double>& ar
                   upper_luminance(luminance, area_m2, clipped_at_most));
 }
 
-// Corner k of patch i is number 4 i + k. Corners of one object and material at one place stand
-// together in the order.
+// Corner k of patch i has the number 4 i + k. Corners of one object and material at one position
+// are adjacent in the order.
 class Corners {
  public:
   explicit Corners(const Patches& patches) : patches_(patches) {
@@ -78,7 +78,7 @@ class Corners {
         extent = std::max(extent, base::max_component(glm::abs(corner)));
       }
     }
-    // Neighbours compute a shared corner each in its own way: alike to rounding.
+    // Neighbours compute a shared corner differently: equal to rounding.
     for (const Vec3& place : places_) grid_.push_back(glm::round(place * (same_place / extent)));
     order_.resize(places_.size());
     std::iota(order_.begin(), order_.end(), std::size_t{0});
@@ -89,7 +89,7 @@ class Corners {
 
   [[nodiscard]] const Vec3& place(std::size_t corner) const { return places_[corner]; }
 
-  // The mean of the patches' values that a corner shows.
+  // Mean of the patches' values at each corner.
   [[nodiscard]] std::vector<Rgb> smooth(const std::vector<Rgb>& values) const {
     std::vector<Rgb> means(places_.size());
     for (std::size_t begin = 0, end = 0; begin < order_.size(); begin = end) {
@@ -136,7 +136,7 @@ void add_vertex(scenes::GltfPart& part, const Vec3& place, const Rgb& colour) {
   }
 }
 
-// The triangles of a cluster, of one colour.
+// Adds the triangles of a cluster with one colour.
 void add_several(scenes::GltfPart& part, const Patches& patches, std::uint32_t patch,
                  const Rgb& colour) {
   const ClusterMembers& members = *patches.clustered;
@@ -176,7 +176,7 @@ SolutionMesh solution_mesh(const scenes::Scene& scene, const Solution& solution)
     for (std::size_t k = 4 * std::size_t{i}; k < 4 * std::size_t{i} + 4; ++k) {
       add_vertex(part, corners.place(k), scale * shown[k]);
     }
-    // Where the apex of a triangle stands twice, one of the two halves has no area.
+    // If a triangle's apex is repeated, one of the two halves has no area.
     const auto same = [&](std::size_t a, std::size_t b) {
       return corners.place(4 * std::size_t{i} + a) == corners.place(4 * std::size_t{i} + b);
     };

@@ -14,14 +14,14 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr double rounding = 1e-6;             // of sines, and of the scene's extent
-constexpr double small_share = 1e-3;          // of the wanted error
-constexpr std::size_t most_triangles = 2048;  // of which every pair is looked at
+constexpr double rounding = 1e-6;             // of sines, and relative to the scene's extent
+constexpr double small_share = 1e-3;          // share of the wanted error
+constexpr std::size_t most_triangles = 2048;  // up to which all pairs are tested
 
 struct Face {
   std::array<Vec3, 3> corner;
   Vec3 normal;
-  bool both_sides;  // sheets and glass: light is welcome from behind
+  bool both_sides;  // sheets and glass: they receive light from behind
 };
 
 double along(const Face& face, const Vec3& point) {
@@ -40,7 +40,7 @@ class CullingPass {
     }
   }
 
-  // A disc of directions that no surface has above its horizon.
+  // Whether a disc of directions lies below the horizon of every surface.
   [[nodiscard]] bool below_every_horizon(const Vec3& direction, double radius_rad) const {
     return no_face([&](const Face& face) {
       return face.both_sides || glm::dot(face.normal, direction) > -std::sin(radius_rad) - rounding;
@@ -60,7 +60,7 @@ class CullingPass {
     return no_face([&](const Face& face) { return may_light(lamp, face); });
   }
 
-  // Whether any surface is in front of one that is in front of it.
+  // Whether any two surfaces are in front of each other.
   [[nodiscard]] bool any_facing() const {
     if (scene_.triangles.size() > most_triangles) return true;
     std::vector<Face> faces;
@@ -82,7 +82,7 @@ class CullingPass {
     double largest = 0.0;
     for (const Triangle& t : scene_.triangles) {
       const Material& material = scene_.materials[t.material];
-      // A texture has brighter places than its mean.
+      // A texture has places brighter than its mean.
       largest = std::max(largest, material.maps ? 1.0 : base::max_component(material.diffuse));
     }
     return largest;
@@ -98,7 +98,7 @@ class CullingPass {
     face.both_sides = material.two_sided || base::max_component(material.transmit) > 0.0;
     return face;
   }
-  // The first one that is, mostly among the first of all, ends it.
+  // Stops at the first match, usually among the first faces.
   [[nodiscard]] bool no_face(const std::function<bool(const Face&)>& is) const {
     for (std::uint32_t t = 0; t < scene_.triangles.size(); ++t) {
       if (is(face_of(t))) return false;
@@ -109,7 +109,7 @@ class CullingPass {
   [[nodiscard]] double slack() const { return rounding * std::max(extent_, 1e-3); }
 
   [[nodiscard]] bool may_light(const Lamp& lamp, const Face& face) const {
-    // Half the size of the lamp along the face's normal.
+    // Half the lamp's extent along the face's normal.
     double reach = 0.0;
     if (lamp.kind == LampKind::Rectangle) {
       reach = 0.5 * (std::abs(glm::dot(face.normal, lamp.edge_u)) +
@@ -127,7 +127,7 @@ class CullingPass {
     return lamp.kind != LampKind::Spot || meets_cone(lamp, face);
   }
 
-  // The ball around the triangle against the cone of the spot.
+  // Bounding sphere of the triangle against the cone of the spot.
   [[nodiscard]] static bool meets_cone(const Lamp& lamp, const Face& face) {
     const Vec3 middle = (face.corner[0] + face.corner[1] + face.corner[2]) / 3.0;
     double radius = 0.0;
@@ -144,7 +144,7 @@ class CullingPass {
   double extent_ = 0.0;  // m
 };
 
-// Once the others are decided: the bounds of light between surfaces.
+// Runs after the other decisions: bounds of the light between surfaces.
 std::vector<Culling> skip_interreflection(const CullingPass& finder, double wanted_error,
                                           Effects& effects) {
   const bool read_otherwise = effects.phong || effects.mirror || effects.refraction ||

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of `earthshine plan`: what decided about each effect, in words.
+// The rows of `earthshine plan`: the fact that decided each effect.
 #include <fmt/format.h>
 
 #include "scenes/effects/effects.h"
@@ -56,7 +56,7 @@ class Rows {
     rows_.push_back({std::move(effect), runs, std::move(reason)});
   }
 
-  // "material "foil" has specular > 0", or why none has.
+  // "material "foil" has specular > 0", or why no material has it.
   template <class Value>
   std::string material(const char* key, Value value) {
     std::string unused;
@@ -79,7 +79,7 @@ class Rows {
                : fmt::format("no camera names a {}", what);
   }
 
-  // Some lamps have a strength, and are in no group: their light was found not to matter.
+  // Whether lamps with a strength are in no group because their light does not matter.
   [[nodiscard]] bool leaves_lamps_out() const {
     for (std::size_t k = 0; k < scene_.lamps.size(); ++k) {
       const bool strong = base::max_component(lamp_flux_lm(scene_.lamps[k])) > 0.0;

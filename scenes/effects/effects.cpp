@@ -9,7 +9,7 @@ namespace earthshine::scenes {
 namespace {
 
 // Below this half angle the Earth's disc fills less than a tenth of a plate's cosine-weighted view,
-// and rays aimed at it find it more often than rays over the hemisphere do.
+// and rays aimed at it are more efficient than rays over the hemisphere.
 constexpr double wide_earth_deg = 18.5;
 
 template <class Value>
@@ -25,11 +25,11 @@ Effects find_effects(const Scene& scene, const LightGroups& groups, const Asked&
   Effects effects;
   effects.sun = groups.sun != no_group;
   effects.sun_parts = groups.sun_parts != no_group;
-  // The report's lights have no extent.
+  // The lights of LightPaths::Distributed have no extent.
   effects.penumbra =
       effects.sun && scene.sun->angular_radius_deg > 0.0 && asked.paths != LightPaths::Distributed;
   effects.earth = groups.earth != no_group;
-  // Shadow rays give all light of one source to one group: an Earth in cells is gathered always.
+  // Shadow rays give all light of a source to one group, so an Earth in cells is always gathered.
   effects.earth_by_gather =
       effects.earth && asked.paths != LightPaths::Distributed &&
       (earth_parts(scene) > 1 || scene.earth->half_angle_deg >= wide_earth_deg);

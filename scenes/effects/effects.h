@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which effects a scene and a call ask for, decided here and nowhere else. An effect that does not
-// run casts no rays, takes no memory and changes no byte of the picture.
+// Decides which effects a scene and a call need; no other code does. An effect that does not run
+// casts no rays, uses no memory and does not change the picture.
 #pragma once
 
 #include <array>
@@ -14,24 +14,24 @@
 
 namespace earthshine::scenes {
 
-// How light gets around in a picture.
+// How light propagates in a picture.
 enum class LightPaths {
-  All,         // from surface to surface, by the radiosity solution
-  Traced,      // from surface to surface, by paths
-  Straight,    // from sources alone; a wide Earth by rays over the hemisphere
-  Distributed  // from sources alone, all by shadow rays
+  All,         // interreflection by the radiosity solution
+  Traced,      // interreflection by path tracing
+  Straight,    // direct light only; a wide Earth by rays over the hemisphere
+  Distributed  // direct light only, by shadow rays
 };
 
-// What a call asks for; nothing said: every camera of the scene, all light.
+// Request of a call. Default: every camera of the scene, all light.
 struct Asked {
   std::vector<const Camera*> cameras;  // empty: all of the scene's
   LightPaths paths = LightPaths::All;
-  bool earth_on_area = false;  // its lights stand on an [[area]] of the scene, not in the sky
+  bool earth_on_area = false;  // Earth's lights lie on an [[area]] of the scene, not in the sky
   bool per_light = false;
   std::vector<std::string> layers;
 };
 
-// What shadow rays are aimed at; each kind of lamp is one of its own, in LampKind's order.
+// Targets of shadow rays; each kind of lamp is a separate entry, in LampKind's order.
 enum class LightKind {
   Sun,
   Earth,
@@ -47,23 +47,23 @@ inline constexpr std::size_t light_kinds = 9, lamp_kinds = lamp_rows.size();
 [[nodiscard]] constexpr LightKind kind_of(LampKind kind) {
   return static_cast<LightKind>(static_cast<int>(LightKind::PointLamp) + static_cast<int>(kind));
 }
-// Its row of the plan: "point lamps".
+// Its row of the plan, for example "point lamps".
 [[nodiscard]] std::string_view effect_of(LightKind kind);
 
 struct Effects {
   bool interreflection = false;
-  bool solution = false;  // radiosity is solved for: interreflection, or wide emitters in lobes
+  bool solution = false;  // radiosity is solved: interreflection, or wide emitters in lobes
   bool sun = false;
   bool sun_parts = false;  // Suns of a sky in parts
   bool penumbra = false;
   bool earth = false;
   bool earth_by_gather =
-      false;  // the Earth is wide or in cells: escaping gather rays read it; else it is sampled
+      false;  // wide or in cells: escaping gather rays read it; false: it is sampled
   bool lamps = false;
   std::array<bool, lamp_kinds> lamp_kind{};
   bool emitters = false;
   bool phong = false;   // highlights of the sources
-  bool glossy = false;  // the lobe's reflection of everything else
+  bool glossy = false;  // glossy reflection of all other light
   bool mirror = false;
   bool refraction = false;
   bool ambient = false;

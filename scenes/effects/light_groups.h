@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light groups: sets of sources that are switched and dimmed together. Matrices and image layers
-// have a column per (group, channel), in the order of this list.
+// have one column per (group, channel), in this order.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ namespace earthshine::scenes {
 
 inline constexpr std::size_t no_group = static_cast<std::size_t>(-1);
 
-// Only groups that give light: the Sun and the Earth where they are up and lit, lamps and emitting
-// surfaces of non-zero power, and "ambient". index_of gives no_group for the others.
+// Contains only groups that give light: Sun and Earth if up and lit, lamps and emitting surfaces of
+// non-zero power, and "ambient". index_of returns no_group for the others.
 struct LightGroups {
   std::vector<std::string> names;
   std::size_t sun = no_group;
@@ -22,7 +22,7 @@ struct LightGroups {
   std::size_t sun_parts = no_group;  // the first of SkyParts::suns
   std::size_t ambient = no_group;
   std::vector<std::size_t> lamp;      // per lamp of the scene
-  std::vector<std::size_t> material;  // per material of the scene; no_group if nothing wears it
+  std::vector<std::size_t> material;  // per material of the scene; no_group if unused
 
   [[nodiscard]] std::size_t count() const { return names.size(); }
 };

@@ -24,7 +24,7 @@ int camera_samples_for(double error) {
 QualityKnobs resolve_quality(const Scene& scene) { return resolve_quality(scene, scene.quality); }
 
 QualityKnobs resolve_quality(const Scene& scene, const Quality& given) {
-  constexpr double reference_error = default_error;  // what the laws were measured at
+  constexpr double reference_error = default_error;  // error at which the laws were measured
   const double ratio = reference_error / given.error.value_or(reference_error);
   QualityKnobs knobs;
   knobs.form_factor_rays = given.form_factor_rays.value_or(

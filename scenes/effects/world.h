@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every stage of a run reads: the scene with its light groups, the effects that were decided
-// for the run, and ray queries. References alone, cheap to copy; all must outlive it.
+// Shared input of every stage of a run: the scene with its light groups, the effects of the run,
+// and ray queries. Holds references only; all must outlive it.
 #pragma once
 
 #include "scenes/effects/effects.h"

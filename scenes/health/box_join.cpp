@@ -11,7 +11,7 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr std::size_t few = 16, many = std::size_t{1} << 12U;
-constexpr int deepest = 22;  // single precision has no smaller parts
+constexpr int deepest = 22;  // single precision resolves no smaller cells
 
 float longest_of(const glm::vec3& size) { return std::max({size.x, size.y, size.z}); }
 
@@ -19,8 +19,8 @@ class Join {
  public:
   explicit Join(const std::function<void(std::uint32_t, std::uint32_t)>& take) : take_(take) {}
 
-  // Boxes that reach into low <= x < high, which is parted in the middle along its long sides.
-  // Those that fill all of it are held against the others here, and do not go further.
+  // Joins boxes that overlap low <= x < high, by halving the space along its long sides. Boxes that
+  // fill it completely are compared with the others here and do not descend.
   void within(std::vector<LabelledBox> boxes, const glm::vec3& low, const glm::vec3& high,
               int depth) const {
     const auto rest = std::partition(boxes.begin(), boxes.end(), [&](const LabelledBox& box) {
@@ -34,7 +34,7 @@ class Join {
     const float longest = longest_of(size);
     float sum = 0.0F;
     for (const LabelledBox& box : boxes) sum += longest_of(box.high - box.low);
-    // Parts smaller than the boxes hold them again and again.
+    // Cells smaller than the boxes would contain them repeatedly.
     if (boxes.size() <= few || depth == deepest ||
         longest * static_cast<float>(boxes.size()) < 2.0F * sum) {
       for (auto box = boxes.begin(); box != boxes.end(); ++box) {
@@ -42,7 +42,7 @@ class Join {
       }
       return;
     }
-    // Of each box the octants that it reaches into, a bit each.
+    // For each box the octants that it overlaps, one bit each.
     constexpr std::array<std::uint8_t, 3> lower{0x55, 0x33, 0x0F};
     std::vector<std::uint8_t> reaches(boxes.size(), 0xFF);
     struct Octant {
@@ -85,7 +85,7 @@ class Join {
   }
 
  private:
-  // A pair is of the space where both begin: of no other.
+  // Reports a pair only in the cell that contains the low corner of its overlap.
   using Boxes = std::vector<LabelledBox>::const_iterator;
   void compare(const LabelledBox& a, Boxes first, Boxes end, const glm::vec3& low,
                const glm::vec3& high) const {
@@ -103,14 +103,14 @@ class Join {
   const std::function<void(std::uint32_t, std::uint32_t)>& take_;
 };
 
-// A grid over all boxes that knows where those of several labels come together: of a fine mesh most
-// are far from any other's.
+// A grid over all boxes that marks cells with several labels: in a fine mesh most boxes are far
+// from other labels.
 class Meetings {
  public:
   Meetings(const std::vector<LabelledBox>& boxes, const glm::vec3& low, const glm::vec3& high)
       : low_(low) {
     const glm::vec3 size = high - low;
-    // About as many cells as boxes, of like edges; a flat scene has one layer.
+    // About as many cells as boxes, nearly cubic; a flat scene has one layer.
     const float volume = std::max(size.x, 1e-3F * longest_of(size)) *
                          std::max(size.y, 1e-3F * longest_of(size)) *
                          std::max(size.z, 1e-3F * longest_of(size));
@@ -121,7 +121,7 @@ class Meetings {
       const glm::ivec3 span = cell_of(box.high) - cell_of(box.low) + 1;
       cells += std::size_t(span.x) * std::size_t(span.y) * std::size_t(span.z);
     }
-    if (cells > most_cells_a_box * boxes.size()) return;  // of needles and walls
+    if (cells > most_cells_a_box * boxes.size()) return;  // for needles and walls
     labels_.assign(std::size_t(count_.x) * std::size_t(count_.y) * std::size_t(count_.z), nobody);
     for (const LabelledBox& box : boxes) {
       any_cell(box, [&](std::uint32_t& label) {
@@ -141,7 +141,7 @@ class Meetings {
   [[nodiscard]] glm::ivec3 cell_of(const glm::vec3& p) const {
     return glm::ivec3((p - low_) / edge_);
   }
-  // Whether it is so of a cell that the box reaches into: until one is found.
+  // Whether any cell that the box overlaps satisfies `is`.
   template <class Is>
   bool any_cell(const LabelledBox& box, const Is& is) {
     const glm::ivec3 from = cell_of(box.low), to = cell_of(box.high);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of many boxes meet.
+// Intersection join of many boxes.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,8 @@ struct LabelledBox {
   std::uint32_t label, item;
 };
 
-// Calls take(item, item) once for each two boxes of different labels that meet. Space is parted
-// until few boxes are left or all of them have one label: where a mesh is alone it costs nothing
-// more.
+// Calls take(item, item) once for each intersecting pair of boxes with different labels. Divides
+// space until few boxes are left or all have one label; a mesh far from others costs nothing more.
 void join_boxes(std::vector<LabelledBox> boxes,
                 const std::function<void(std::uint32_t, std::uint32_t)>& take);
 

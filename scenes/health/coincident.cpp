@@ -21,19 +21,19 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr double parallel_sine = 1e-3;  // a first look; heights decide
-constexpr double tie_share = 0.02;      // of contact: as much as single precision of a file leaves
-// Rays that start off surfaces by more than this may miss a gap. Its height in offsets: less, and
-// 5 % and more of it are passed by.
+constexpr double parallel_sine = 1e-3;  // preliminary test; heights decide
+constexpr double tie_share = 0.02;      // of the contact distance: rounding in the file
+// Rays with a larger offset than coarse_m may miss a gap. Below narrow_gap offsets a gap is too
+// narrow: at least 5 % of its height is skipped.
 constexpr double coarse_m = 1e-5, narrow_gap = 20.0;
-constexpr std::size_t asked_every = 1U << 20;  // pairs, for whose room is asked
+constexpr std::size_t asked_every = 1U << 20;  // pairs between two memory checks
 
 struct Overlap {
   double area_m2, height_m;  // of the second over the first, along the first's normal
 };
 
-// A convex polygon in the plane of the first triangle, x and y along two of its axes, z the height
-// of the second triangle's plane there.
+// A convex polygon in the plane of the first triangle: x and y along two of its axes, z the height
+// of the second triangle's plane.
 using Polygon = std::vector<Vec3>;
 
 Polygon clipped(const Polygon& polygon, const Vec3& from, const Vec3& to) {
@@ -105,23 +105,23 @@ class Coincidence {
   }
 
  private:
-  // The higher one lies on the other.
+  // The face with the higher rank lies on the other.
   struct Rank {
     bool shines;
-    int open;  // 2; 1 for a room's wall, 0 for a body's
+    int open;  // 2 open; 1 room's wall, 0 body
     std::uint32_t triangle;
     auto operator<=>(const Rank&) const = default;
   };
   struct Gap {
     double height_m = 0.0, offset_m = 0.0;
-    double away_m = 0.0;  // from the centre
+    double away_m = 0.0;  // distance from the centre
   };
-  // What was a guess, m2.
+  // Areas decided by rank alone, m2.
   struct Decided {
-    double over_m2 = 0.0, sides_m2 = 0.0;  // one over the other, back to back
+    double over_m2 = 0.0, sides_m2 = 0.0;  // one on the other, back to back
   };
 
-  // A little larger than it is: neither a gap nor rounding parts two that touch.
+  // Slightly enlarged, so that neither a gap nor rounding separates two touching boxes.
   [[nodiscard]] std::pair<glm::vec3, glm::vec3> box_of(std::uint32_t t) const {
     const Corners p = corners_of(scene_, t);
     const double contact_m = reach_m(t);
@@ -152,7 +152,7 @@ class Coincidence {
       return;
     }
     const bool same_way = glm::dot(first.normal(), second.normal()) > 0.0;
-    // Walls of a house are seen from both sides, whichever of them rounding has put in front.
+    // House walls are seen from both sides, whichever face rounding puts in front.
     const bool wall = !same_way && !material(a).two_sided && !material(b).two_sided &&
                       (kind(a) == FaceParts::Kind::Body || kind(b) == FaceParts::Kind::Body) &&
                       !look_at_each_other(a, b);
@@ -173,12 +173,12 @@ class Coincidence {
     (same_way || sheet ? decided.over_m2 : decided.sides_m2) += overlap->area_m2;
   }
 
-  // How far from a triangle others are looked for.
+  // Search distance for other faces around a triangle.
   [[nodiscard]] double reach_m(std::uint32_t t) const {
     return offsets_.of(t) > coarse_m ? narrow_gap * offsets_.of(t) : offsets_.contact(t);
   }
 
-  // Faces one over the other, so near that the offset of rays is a good part of the distance.
+  // Records faces so close together that the offset of rays is a large part of their distance.
   void note_gap(std::uint32_t a, std::uint32_t b, const Corners& first, const Corners& second) {
     const double offset_m = std::max(offsets_.of(a), offsets_.of(b));
     if (offset_m <= coarse_m) return;
@@ -197,12 +197,12 @@ class Coincidence {
     }
   }
 
-  // Whether b is before a's front, where heights do not tell.
+  // Whether b is in front of a's front, if heights do not decide.
   [[nodiscard]] bool is_before(std::uint32_t a, std::uint32_t b, bool same_way) {
     const bool sheet_a = material(a).two_sided, sheet_b = material(b).two_sided;
     if (!same_way && !sheet_a && !sheet_b) return look_at_each_other(a, b);
-    // The higher one lies on the front of the other; or, if that has no black back, with its own
-    // back on it.
+    // The higher rank lies on the front of the other; or, if it has no black back, with its own
+    // back on the other.
     if (rank(b) > rank(a)) return !sheet_a || sheet_b || same_way;
     const bool a_before_b = !sheet_b || sheet_a || same_way;
     return same_way ? !a_before_b : a_before_b;
@@ -213,7 +213,7 @@ class Coincidence {
     if (kind(b) == Kind::Body) std::swap(a, b);
     if (kind(a) != Kind::Body) return false;
     if (kind(b) == Kind::Body) return true;
-    // The walls of a house are a body and what is in it; what a body stands on, or in, reaches
+    // The walls of a house form a body with its contents inside. An object on or in a body extends
     // beyond it.
     const auto &house = part_box(parts_.of[a]), &other = part_box(parts_.of[b]);
     const glm::vec3 reach(static_cast<float>(4.0 * offsets_.contact(a, b)));
@@ -269,9 +269,9 @@ class Coincidence {
   Scene& scene_;
   const FaceParts& parts_;
   SurfaceOffsets offsets_;
-  Vec3 centre_;  // of what is held in single precision
+  Vec3 centre_;  // origin of single-precision coordinates
   std::map<std::pair<std::uint32_t, std::uint32_t>, Gap> gaps_;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, Decided> decided_;  // objects: under, over
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Decided> decided_;  // objects: below, above
   std::vector<std::pair<glm::vec3, glm::vec3>> part_boxes_;
 };
 

@@ -9,7 +9,7 @@
 namespace earthshine::scenes {
 namespace {
 
-// Of the scene's extent: what single precision, in which most meshes are stored, tells apart.
+// Share of the scene's extent: resolution of single precision, in which most meshes are stored.
 constexpr double tolerance_share = 2e-6;
 constexpr std::size_t most_pairs = 50'000'000;
 constexpr std::size_t leaf = 4;
@@ -18,8 +18,8 @@ struct Span {
   double low, high;
 };
 
-// Where a triangle meets the other's plane, along the planes' common line: of the corners' signed
-// distances from that plane, some above the tolerance and some below.
+// Interval of a triangle on the common line of its plane and the other triangle's plane. distance:
+// signed distances of the corners from the other plane, on both sides of the tolerance.
 Span meets_plane(const std::array<Vec3, 3>& corner, const std::array<double, 3>& distance,
                  const Vec3& line) {
   Span span{1e300, -1e300};
@@ -51,13 +51,13 @@ std::array<double, 3> distances(const std::array<Vec3, 3>& corner, const Plane& 
   return distance;
 }
 
-// Whether there are corners on both sides.
+// Whether corners lie on both sides.
 bool on_both_sides(const std::array<double, 3>& distance, double tolerance) {
   const auto [low, high] = std::minmax_element(distance.begin(), distance.end());
   return *low<-tolerance&& * high> tolerance;
 }
 
-// The length of the line in which two triangles run through one another, m; 0 where they do not.
+// Length of the line in which two triangles intersect, m; 0 without intersection.
 double shared_line(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double tolerance) {
   const Plane plane_b = plane_of(b);
   const auto a_from_b = distances(a, plane_b);
@@ -74,7 +74,7 @@ double shared_line(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, d
   return shared > tolerance ? shared : 0.0;
 }
 
-// A tree of boxes over all triangles, in place.
+// A bounding-box tree over all triangles, in place.
 class Tree {
  public:
   explicit Tree(const Scene& scene) : scene_(scene), order_(scene.triangles.size()) {
@@ -87,7 +87,7 @@ class Tree {
     if (!order_.empty()) build(0, order_.size());
   }
 
-  // look(a, b) for pairs of different objects whose boxes overlap, until it returns false.
+  // Calls look(a, b) for pairs of different objects with overlapping boxes, until it returns false.
   template <class Look>
   void pairs(Look look) const {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> open{{0, 0}};
@@ -95,7 +95,7 @@ class Tree {
       const auto [m, n] = open.back();
       open.pop_back();
       const Node &a = nodes_[m], &b = nodes_[n];
-      // One object alone is of no interest.
+      // Skips pairs of nodes of the same object.
       if (a.object == b.object && a.object != several) continue;
       if (!overlap(a.box, b.box)) continue;
       if (a.second == 0 && b.second == 0) {
@@ -122,7 +122,7 @@ class Tree {
     Box box;
     std::size_t begin, end;
     std::uint32_t first = 0, second = 0;  // 0: a leaf
-    std::uint32_t object = several;       // of all of it
+    std::uint32_t object = several;       // if all its triangles have the same object
   };
 
   static bool overlap(const Box& a, const Box& b) {
@@ -162,12 +162,11 @@ class Tree {
   std::vector<Node> nodes_;
 };
 
-// Some points of an object, spread over its triangles.
+// Number of points on an object, distributed over its triangles.
 constexpr std::size_t probes = 64;
-constexpr std::size_t most_angles = 20'000'000;  // that are worked out in all
+constexpr std::size_t most_angles = 20'000'000;  // limit of all solid angles computed
 
-// Of bodies whose faces lie in the same planes none crosses another: one may still be in part within
-// the other.
+// Bodies with coplanar faces have no crossing triangles, but one may be partly inside the other.
 class Bodies {
  public:
   explicit Bodies(const Scene& scene) : scene_(scene) {
@@ -179,7 +178,7 @@ class Bodies {
                                      glm::max(boxes_[a].low, boxes_[b].low) + tolerance));
   }
 
-  // Whether a part of `other` is inside the body and a part outside. None where it has no inside.
+  // Whether part of `other` is inside the body and part outside. False if the body has no inside.
   [[nodiscard]] bool holds_part_of(std::uint32_t body, std::uint32_t other) {
     const Object &outer = scene_.objects[body], &inner = scene_.objects[other];
     const SurfaceHealth& surface = outer.surface;

@@ -18,7 +18,7 @@
 namespace earthshine::scenes {
 namespace {
 
-// Polygons whose corners another one may have too: those alike in a digest of the corners.
+// Polygons that may share all corners with another one: groups with equal corner digests.
 std::vector<Face> faces_of(const Scene& scene, std::span<const std::uint32_t> ids) {
   const auto& triangles = scene.triangles;
   Face face;
@@ -31,7 +31,7 @@ std::vector<Face> faces_of(const Scene& scene, std::span<const std::uint32_t> id
     face.corners.erase(std::unique(face.corners.begin(), face.corners.end()), face.corners.end());
   };
   const auto digest_of = [&](std::uint32_t first, std::uint32_t end) {
-    // A sum, whatever corner comes first.
+    // A sum, independent of the first corner.
     std::uint64_t digest = 0;
     if (end == first + 1) {  // most of a large mesh
       for (const std::uint32_t v : triangles[first].vertex) digest += base::mix64(ids[v]);
@@ -52,7 +52,7 @@ std::vector<Face> faces_of(const Scene& scene, std::span<const std::uint32_t> id
   each([&](std::size_t, std::uint32_t first, std::uint32_t end) {
     digests.push_back(static_cast<std::uint32_t>(digest_of(first, end) >> 32U));
   });
-  // 0, 1, more
+  // Counts 0, 1, more.
   std::vector<std::uint8_t> seen(
       std::min(std::bit_ceil(4 * digests.size() + 1), std::size_t{1} << 32U), 0);
   for (const std::uint32_t digest : digests) {
@@ -70,7 +70,7 @@ std::vector<Face> faces_of(const Scene& scene, std::span<const std::uint32_t> id
   return faces;
 }
 
-// m^2, along its normal.
+// Vector area along its normal, m^2.
 Vec3 area_of(const Scene& scene, const Face& face) {
   Vec3 area{0.0};
   for (std::uint32_t t = face.first; t < face.first + face.count; ++t) {
@@ -79,13 +79,13 @@ Vec3 area_of(const Scene& scene, const Face& face) {
   return area;
 }
 
-// What was found between two objects (or within one), in faces.
+// Numbers of faces found between two objects (or within one).
 struct Found {
   std::size_t twice = 0, back_to_back = 0, left = 0;
 };
 
-// Two polygons of the same corners cover the same place if they have the same area: corners in
-// another order enclose another one.
+// Polygons with the same corners cover the same place if they have the same area: another order of
+// the corners encloses another area.
 bool same_place(const Vec3& area, const Vec3& other) {
   const double size = glm::length(area);
   return std::min(glm::length(area - other), glm::length(area + other)) <= 1e-9 * size;
@@ -125,7 +125,7 @@ void drop(Scene& scene, const std::vector<char>& gone) {
   scene.triangles = std::move(kept);
 }
 
-// Throws for an object of which every face stands, turned alike, in objects before it.
+// Throws for an object all of whose faces duplicate faces of earlier objects with equal winding.
 void refuse_doubles(const Scene& scene, const std::vector<std::size_t>& doubled) {
   for (std::size_t o = 0; o < doubled.size(); ++o) {
     if (doubled[o] == 0 || doubled[o] < scene.objects[o].polygon_count) continue;
@@ -162,14 +162,14 @@ bool mend_doubled_faces(Scene& scene, const DoubledFaces& doubled, Sheets& sheet
   std::map<std::pair<std::uint32_t, std::uint32_t>, Found> found;
   std::vector<std::size_t> doubles(scene.objects.size(), 0);
   std::vector<char> gone(scene.triangles.size(), 0);
-  // Of two bodies: where those touch, each hides the other's face.
+  // Faces of two bodies: where bodies touch, each hides the other's face.
   const auto apart = [&](std::uint32_t a, std::uint32_t b) {
     const std::uint32_t one = parts.of[a], two = parts.of[b];
     return one != two && parts.kind[one] != FaceParts::Kind::Open &&
            parts.kind[two] != FaceParts::Kind::Open;
   };
   for (const std::vector<Face>& group : doubled) {
-    // Each later face is held against the first one at its very place.
+    // Each later face is compared with the first one at the same place.
     for (auto other = group.begin() + 1; other != group.end(); ++other) {
       const Face& face = *other;
       const Vec3 area = area_of(scene, face);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faces that stand at the same place more than once.
+// Duplicate faces at the same place.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace earthshine::scenes {
 
-// Two-sided twins of materials.
+// Two-sided copies of materials.
 class Sheets {
  public:
   explicit Sheets(Scene& scene) : scene_(scene) {}
 
-  // The material as both sides of a sheet wear it; added to the scene, once, if it has one side.
-  // Glass has no black back, and a sheet of it would not refract: it stays what it is.
+  // The two-sided version of a material, added to the scene once if necessary. Glass stays
+  // unchanged: it has no black back, and a sheet of glass would not refract.
   [[nodiscard]] std::uint32_t of(std::uint32_t material) {
     if (scene_.materials[material].two_sided || is_glass(material)) return material;
     const auto [entry, fresh] =
@@ -36,7 +36,7 @@ class Sheets {
   [[nodiscard]] bool is_glass(std::uint32_t material) const {
     return base::max_component(scene_.materials[material].transmit) > 0.0;
   }
-  // Alike but for the number of sides.
+  // Equal except for two_sided.
   [[nodiscard]] bool alike(std::uint32_t a, std::uint32_t b) const {
     return original(a) == original(b);
   }
@@ -51,19 +51,20 @@ class Sheets {
   std::map<std::uint32_t, std::uint32_t> twins_, originals_;
 };
 
-// The triangles of a polygon of the file; they follow each other in the scene.
+// The triangles of one file polygon, consecutive in the scene.
 struct Face {
   std::uint32_t first = 0, count = 0;
-  std::vector<std::uint32_t> corners;  // welded, ascending, each once
+  std::vector<std::uint32_t> corners;  // welded, ascending, without repetitions
 };
 
-// Groups of faces with the same corners, the first of the scene first; of none whose object is to
-// be left as it is. ids: as welded() gives them.
+// Groups of faces with the same corners, in scene order; excludes objects with Orient::AsIs. ids:
+// result of welded().
 using DoubledFaces = std::vector<std::vector<Face>>;
 [[nodiscard]] DoubledFaces find_doubled_faces(const Scene& scene,
                                               std::span<const std::uint32_t> ids);
 
-// As mend_surfaces has it; whether any were taken out or changed.
+// Repairs duplicate faces as described at mend_surfaces. Returns whether any face was removed or
+// changed.
 [[nodiscard]] bool mend_doubled_faces(Scene& scene, const DoubledFaces& doubled, Sheets& sheets,
                                       const FaceParts& parts);
 

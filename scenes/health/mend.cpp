@@ -20,8 +20,8 @@
 namespace earthshine::scenes {
 namespace {
 
-// A lamp's distance from a surface in contact's lengths (surface_offset.h): that it has at least,
-// and what no scene means.
+// Distance of a lamp from a surface in contact distances (surface_offset.h): the minimum, and the
+// distance below which it lies on the surface.
 constexpr double least_contacts = 8.0, rounding_contacts = 1e-6;
 constexpr int most_lifts = 8;
 
@@ -29,19 +29,19 @@ struct Nearest {
   double distance_m = std::numeric_limits<double>::infinity();
   Vec3 point{0.0};
   std::uint32_t triangle = 0;
-  double reach_m = 0.0;  // that a lamp has at least from that triangle
+  double reach_m = 0.0;  // minimum distance of a lamp from that triangle
   bool on_it = false;
   [[nodiscard]] bool found() const { return distance_m < reach_m; }
 };
 
-// The nearest point of those surfaces that are nearer than a lamp may be, if there is one.
+// The nearest point of the surfaces that are closer than a lamp may be, if any.
 Nearest nearest_surface(const Scene& scene, const SurfaceOffsets& offsets, const Vec3& position) {
-  constexpr double rounding = 1e-6;  // of a lamp that was lifted off the surface
+  constexpr double rounding = 1e-6;  // of a lamp that was moved off the surface
   Nearest nearest;
   for (std::uint32_t k = 0; k < scene.triangles.size(); ++k) {
     const auto [a, b, c] = corners_of(scene, k);
     const double reach = least_contacts * offsets.contact(k);
-    // Most triangles are farther than that along one axis.
+    // Most triangles are farther away along one axis.
     const Vec3 from = glm::min(a, glm::min(b, c)) - reach, to = glm::max(a, glm::max(b, c)) + reach;
     if (glm::any(glm::lessThan(position, from)) || glm::any(glm::greaterThan(position, to))) {
       continue;
@@ -55,7 +55,7 @@ Nearest nearest_surface(const Scene& scene, const SurfaceOffsets& offsets, const
   return nearest;
 }
 
-// Whether the lamp would come to stand on the other side of a surface that it was near.
+// Whether the lamp would cross a surface that it is near.
 bool goes_through(const Scene& scene, const Vec3& from, const Vec3& to, double reach) {
   for (std::uint32_t k = 0; k < scene.triangles.size(); ++k) {
     const auto [a, b, c] = corners_of(scene, k);
@@ -66,7 +66,7 @@ bool goes_through(const Scene& scene, const Vec3& from, const Vec3& to, double r
   return false;
 }
 
-// Off one surface after another, as many as meet in a corner; nothing if that has no end.
+// Moves off several surfaces in turn, as in a corner; no value if this does not end.
 std::optional<Vec3> lifted(const Scene& scene, const SurfaceOffsets& offsets, const Vec3& start) {
   Vec3 position = start;
   double most_m = 0.0;
@@ -84,8 +84,8 @@ std::optional<Vec3> lifted(const Scene& scene, const SurfaceOffsets& offsets, co
   return std::nullopt;
 }
 
-// Lamps with a front are often mounted flush: of those that shine away from what they stand on no
-// light is lost, but rays from the camera must meet them first.
+// Flush-mounted lamps with a front, which shine away from their surface, lose no light, but camera
+// rays must hit them first.
 bool shines_at(const Scene& scene, const Lamp& lamp, const Nearest& near) {
   const Vec3 toward =
       near.on_it ? -triangle_normal(scene, near.triangle) : near.point - lamp.position;
@@ -107,7 +107,7 @@ FaceParts mend_surfaces(Scene& scene, const FileFronts& fronts) {
   std::optional<Orienter> orienter(std::in_place, scene, ids, fronts);
   const DoubledFaces doubled = find_doubled_faces(scene, ids);
   if (!doubled.empty()) {
-    // Bodies first: where one that is inside out touches another, their faces look alike.
+    // Bodies first: if one that is inside out touches another, their faces have equal normals.
     orienter->orient_all(true);
     if (mend_doubled_faces(scene, doubled, sheets, orienter->parts())) {
       orienter.emplace(scene, ids, fronts);

@@ -12,13 +12,13 @@
 namespace earthshine::scenes {
 namespace {
 
-// Solid angles: a point on a face, an edge or a corner has some, one outside none; all of 4 pi one
-// that is strictly inside.
+// Solid angles: a point on a face, an edge or a corner sees some, a point outside 0, a point
+// strictly inside 4 pi.
 constexpr double on_it = 0.1;
 constexpr double strictly_inside = 4.0 * base::pi - 0.1;
-// So many triangles of another part, spread over it, are looked at.
+// Number of triangles of another part that are tested.
 constexpr std::size_t probes = 8;
-constexpr double wide = 8.0;  // over the median of the parts' widths
+constexpr double wide = 8.0;  // times the median width of the parts
 
 }  // namespace
 
@@ -113,7 +113,7 @@ void Orienter::orient(std::size_t number, bool bodies_alone) {
     } else if (front != Front::Unknown) {
       if (against || part.mixed_edges > 0) counts.by_normals += turn(part, against);
     } else if (part.mixed_edges > 0) {
-      // What a camera stands in is a room; with something else in it most of the area decides.
+      // A part around a camera is a room; around other objects most of the area decides.
       const bool keeps_side = inside == Inside::Things || inward;
       tally(part, turn(part, !keeps_side), counts);
     }
@@ -121,7 +121,7 @@ void Orienter::orient(std::size_t number, bool bodies_alone) {
   say(object, counts);
 }
 
-// By orient = "outward" or "inward"; what is flat has neither side, and has its faces alike.
+// Orients by "outward" or "inward". A flat part has neither side; its faces get equal orientation.
 void Orienter::turn_as_told(SurfacePart& part, Orient word, Counts& counts) {
   const double edge = glm::length(part.high - part.low);
   const double volume = part.closed() ? part.volume_m3 : cup_volume(part);
@@ -155,7 +155,7 @@ Orienter::Front Orienter::front_by_normals(const SurfacePart& part) const {
   return along > against ? Front::Oriented : Front::Opposite;
 }
 
-// The solid angles of its faces, those whose inside is seen counted above 0.
+// Sum of the solid angles of its faces, positive if the inside is visible.
 double Orienter::seen_from_inside(const SurfacePart& part) const {
   const double outward = cup_volume(part) < 0.0 ? -1.0 : 1.0;
   double sum = 0.0;
@@ -177,14 +177,14 @@ std::size_t Orienter::turn(SurfacePart& part, bool all) {
     ++turned;
   }
   keep_parallelograms(part, all);
-  // What is asked about it from now on is asked of what it has become.
+  // Later tests use the new orientation.
   if (all) part.volume_m3 = -part.volume_m3;
   std::fill(part.turned.begin(), part.turned.end(), char{0});
   part.mixed_edges = 0;
   return turned;
 }
 
-// (0,1,2), (0,2,3) of a parallelogram have become (0,2,1), (0,3,2), and stand the other way about.
+// (0,1,2), (0,2,3) of a parallelogram became (0,2,1), (0,3,2); restores the order.
 void Orienter::keep_parallelograms(const SurfacePart& part, bool all) {
   const auto is_turned = [&](std::size_t k) { return (part.turned[k] != 0) != all; };
   auto& triangles = scene_.triangles;
@@ -235,7 +235,7 @@ Orienter::Inside Orienter::what_is_inside(std::size_t number, std::size_t p) {
   return parts.any_beside(part, holds) ? Inside::Things : Inside::Nothing;
 }
 
-// Whether it stands in a body of its own object that is turned outward.
+// Whether it lies in a body of its own object that is oriented outward.
 bool Orienter::is_cavity(std::size_t number, std::size_t p) {
   const Parts& parts = parts_of(number);
   const SurfacePart& part = parts.all[p];
@@ -258,7 +258,7 @@ bool Orienter::stands_in(const SurfacePart& outer, const SurfacePart& inner) con
   return false;
 }
 
-// About the middle of its box: an open part is outward where its faces' pyramids have volume.
+// Signed volume of the pyramids from the middle of its box: an open part is outward if positive.
 double Orienter::cup_volume(const SurfacePart& part) const {
   const Vec3 middle = 0.5 * (part.low + part.high);
   double volume = 0.0;
@@ -280,8 +280,8 @@ bool Orienter::all_two_sided(const SurfacePart& part) const {
   });
 }
 
-// A window in a wall or a ceiling that shines makes a room of a closed part; a body all of glass or
-// all of light does not.
+// A window in a wall or an emitting ceiling makes a closed part a room; a body completely of glass
+// or completely emitting is none.
 bool Orienter::is_window_or_lamp_in_part(const SurfacePart& part) const {
   std::size_t some = 0;
   for (const std::uint32_t t : part.triangles) {
@@ -317,7 +317,7 @@ void Orienter::say(const Object& object, const Counts& counts) {
                     name, counts.by_normals, object.triangle_count));
   }
   if (counts.mixed_edges > 0) {
-    // Fronts are wanted where the cameras are.
+    // Fronts should face the cameras.
     const char* const sides = counts.seen_inside > 0.0   ? "\"inward\", the side that cameras see,"
                               : counts.seen_inside < 0.0 ? "\"outward\", the side that cameras see,"
                                                          : "\"inward\", \"outward\"";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which way the parts of objects are turned.
+// Orientation of the parts of objects.
 #pragma once
 
 #include <cstddef>
@@ -15,48 +15,47 @@
 
 namespace earthshine::scenes {
 
-// As mend_surfaces has it. Made anew when triangles have been added or taken out.
+// Implements the rules of mend_surfaces. Recreate it after triangles were added or removed.
 class Orienter {
  public:
-  // ids: as welded() gives them, and as long as the Orienter is there.
-  // fronts: likewise.
+  // ids: result of welded(). ids and fronts must outlive the Orienter.
   Orienter(Scene& scene, std::span<const std::uint32_t> ids, const FileFronts& fronts)
       : scene_(scene), ids_(ids), fronts_(fronts) {}
 
-  // bodies_alone: closed parts only, and nothing is said of others.
+  // bodies_alone: closed parts only, without messages about others.
   void orient_all(bool bodies_alone);
 
-  // Of all objects, as they are turned now; each object's `surface` is filled by the way.
+  // Parts of all objects in their present orientation; also fills each object's `surface`.
   [[nodiscard]] FaceParts parts();
 
  private:
   struct Parts {
     std::vector<SurfacePart> all;
-    std::vector<std::uint32_t> by_low_x;  // numbers, but those of wide ones
+    std::vector<std::uint32_t> by_low_x;  // indices, without wide parts
     std::vector<std::uint32_t> wide;
-    double width_m = 0.0;  // along x, of the widest of the others
+    double width_m = 0.0;  // largest width along x of the other parts
 
-    // Whether holds(number) is true of any part that may overlap this one along x.
+    // Whether holds(number) is true for any part that may overlap this one along x.
     template <class Holds>
     [[nodiscard]] bool any_beside(const SurfacePart& part, Holds holds) const;
   };
   struct Counts {
     std::size_t bodies = 0, triangles = 0, mixed_edges = 0, one_sided = 0;
     std::size_t by_normals = 0;  // triangles
-    double seen_inside = 0.0;    // of surfaces with mixed edges: see seen_from_inside
+    double seen_inside = 0.0;    // for surfaces with mixed edges: see seen_from_inside
   };
   enum class Inside { Nothing, Things, Camera };
-  // As a part's orientation has it; none where the file does not say.
+  // Relative to the part's orientation; Unknown if the file has no normals.
   enum class Front { Unknown, Oriented, Opposite };
 
   void orient(std::size_t object, bool bodies_alone);
   [[nodiscard]] Parts& parts_of(std::size_t object);
-  // How many triangles it turned.
+  // Returns the number of triangles turned.
   std::size_t turn(SurfacePart& part, bool all);
   void turn_as_told(SurfacePart& part, Orient word, Counts& counts);
   static void tally(const SurfacePart& part, std::size_t turned, Counts& counts);
   [[nodiscard]] Front front_by_normals(const SurfacePart& part) const;
-  // Above 0 where the cameras see more of its inside than of its outside.
+  // Positive if the cameras see more of its inside than of its outside.
   [[nodiscard]] double seen_from_inside(const SurfacePart& part) const;
   void keep_parallelograms(const SurfacePart& part, bool all);
   [[nodiscard]] Inside what_is_inside(std::size_t object, std::size_t part);

@@ -14,7 +14,7 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr double least_offsets = 20.0;  // across an object
+constexpr double least_offsets = 20.0;  // least size of an object
 
 }  // namespace
 

@@ -12,7 +12,7 @@
 namespace earthshine::scenes {
 namespace {
 
-// Sets of triangles, each with whether it is wound against the first of its set.
+// Union-find of triangles with relative winding.
 class Winding {
  public:
   explicit Winding(std::size_t count) : parent_(count), against_(count, 0) {
@@ -29,7 +29,7 @@ class Winding {
       against = static_cast<char>(against ^ against_[root]);
       root = parent_[root];
     }
-    // Paths are made short, or a strip of a million triangles takes a million steps each.
+    // Path compression: without it a strip of a million triangles takes a million steps per search.
     char rest = against;
     while (parent_[t] != root && t != root) {
       const std::uint32_t next = parent_[t];
@@ -41,7 +41,7 @@ class Winding {
     }
     return {root, against};
   }
-  // Whether that agrees with what is known already.
+  // Returns whether this agrees with earlier unions.
   bool unite(std::uint32_t a, std::uint32_t b, bool against) {
     const Place pa = find(a), pb = find(b);
     const auto apart = static_cast<char>(pa.against ^ pb.against ^ static_cast<char>(against));
@@ -56,11 +56,11 @@ class Winding {
   std::vector<char> against_;
 };
 
-// The edges of an object, with the triangles that use them.
+// The edges of an object with the triangles that use them.
 class Edges {
  public:
-  // A triangle, counted from the object's first, and whether it runs from the edge's lower vertex
-  // to the higher one. Numbers, so that they are sorted fast: by edge and triangle.
+  // A triangle, as an offset from the object's first, and whether it runs from the edge's lower
+  // vertex to the higher one. Packed into integers for fast sorting by edge and triangle.
   class Use {
    public:
     Use() = default;
@@ -97,7 +97,7 @@ class Edges {
       ++count;
     });
     if (count == 0) return;
-    std::vector<std::uint32_t> lows;  // of a small object on vertices of a large one
+    std::vector<std::uint32_t> lows;  // for a small object on vertices of a large one
     const bool sparse = std::size_t{highest} - lowest > 8 * count;
     if (sparse) {
       each_use([&](std::uint32_t low, const Use&) { lows.push_back(low); });
@@ -109,7 +109,7 @@ class Edges {
       return static_cast<std::size_t>(std::lower_bound(lows.begin(), lows.end(), low) -
                                       lows.begin());
     };
-    // Each goes to the place of its lower vertex; there are few at any.
+    // Bucket sort by the lower vertex; each bucket is small.
     end_.assign(place_of(highest) + 2, 0);
     each_use([&](std::uint32_t low, const Use&) { ++end_[place_of(low) + 1]; });
     std::partial_sum(end_.begin(), end_.end(), end_.begin());
@@ -138,11 +138,11 @@ class Edges {
   }
 
  private:
-  std::vector<std::uint32_t> end_;  // of the uses at each lower vertex
+  std::vector<std::uint32_t> end_;  // end of the uses at each lower vertex
   std::vector<Use> uses_;
 };
 
-// Turns the part's orientation to that of most of its area and measures it.
+// Sets the part's orientation to that with the larger area and measures it.
 void measure(const Scene& scene, SurfacePart& part) {
   double kept = 0.0, turned = 0.0;
   part.low = part.high = scene.vertices[scene.triangles[part.triangles.front()].vertex[0]];
@@ -164,7 +164,7 @@ void measure(const Scene& scene, SurfacePart& part) {
 }  // namespace
 
 std::vector<std::uint32_t> welded(std::span<const Vec3> vertices) {
-  // A table of the first vertex at each place, at most half full.
+  // Hash table of the first vertex at each position, at most half full.
   constexpr std::uint32_t empty = 0xFFFFFFFFU;
   const std::size_t slots = std::bit_ceil(2 * vertices.size() + 1);
   std::vector<std::uint32_t> table(slots, empty), id(vertices.size());
@@ -186,13 +186,13 @@ std::vector<SurfacePart> surface_parts(const Scene& scene, const Object& object,
   const Edges edges(scene, object, ids);
   using Uses = std::span<const Edges::Use>;
   Winding winding(object.triangle_count);
-  std::vector<std::uint32_t> torn;  // a triangle of each edge that contradicts
+  std::vector<std::uint32_t> torn;  // one triangle of each contradicting edge
   edges.each([&](Uses uses) {
     if (uses.size() != 2) return;
     const std::uint32_t a = uses[0].triangle(), b = uses[1].triangle();
     if (!winding.unite(a, b, uses[0].rising() == uses[1].rising())) torn.push_back(a);
   });
-  std::vector<std::uint32_t> number(object.triangle_count);  // of the part
+  std::vector<std::uint32_t> number(object.triangle_count);  // part of each triangle
   std::vector<SurfacePart> parts;
   for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
     const auto [root, against] = winding.find(t);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the triangles of an object hang together, by edges between vertices at the same place.
+// Connectivity of the triangles of an object by edges between vertices at equal positions.
 #pragma once
 
 #include <cmath>
@@ -12,23 +12,23 @@
 
 namespace earthshine::scenes {
 
-// Of each vertex the first one at the same place, to the last bit.
+// For each vertex the first one at exactly the same position.
 [[nodiscard]] std::vector<std::uint32_t> welded(std::span<const Vec3> vertices);
 
-// Triangles that hang together by edges which two of them share.
+// Triangles connected by edges that two of them share.
 struct SurfacePart {
   std::vector<std::uint32_t> triangles;  // of the scene, ascending
-  std::vector<char> turned;              // of each: to be turned round for one orientation of all
-  std::size_t open_edges = 0;            // of one triangle
-  std::size_t crowded_edges = 0;         // of more than two, each counted with one of their parts
-  bool crowded = false;                  // any edge of its own is of more than two
-  std::size_t mixed_edges = 0;           // of two that are wound against each other
-  bool orientable = true;                // one orientation for all is possible
-  double volume_m3 = 0.0;                // signed, in that orientation; of a closed part
+  std::vector<char> turned;              // per triangle: reverse for consistency
+  std::size_t open_edges = 0;            // with one triangle
+  std::size_t crowded_edges = 0;         // with more than two; each counts for one of their parts
+  bool crowded = false;                  // has an edge with more than two triangles
+  std::size_t mixed_edges = 0;           // between two triangles of opposite winding
+  bool orientable = true;                // a consistent orientation is possible
+  double volume_m3 = 0.0;                // of a closed part, signed, in the consistent orientation
   Vec3 low{0.0}, high{0.0};              // its box
 
   [[nodiscard]] bool closed() const { return open_edges == 0 && !crowded; }
-  // In its own orientation a body of some volume; a sheet that is closed has none.
+  // Whether it has volume; a closed sheet has none.
   [[nodiscard]] bool is_body() const {
     const double edge = glm::length(high - low);
     return closed() && std::abs(volume_m3) > flat_share * edge * edge * edge;
@@ -36,14 +36,13 @@ struct SurfacePart {
   static constexpr double flat_share = 1e-9;
 };
 
-// The parts of one object, by their first triangle. The orientation of a part is that of most of
-// its area. ids: as welded() gives them.
+// The parts of one object in order of their first triangle. The orientation of a part is the one of
+// most of its area. ids: result of welded().
 [[nodiscard]] std::vector<SurfacePart> surface_parts(const Scene& scene, const Object& object,
                                                      std::span<const std::uint32_t> ids);
 
-// The solid angle that a closed part fills as seen from a point, without sign: 4 pi inside, 0
-// outside, something between on it (van Oosterom and Strackee, "The solid angle of a plane
-// triangle", 1983).
+// Unsigned solid angle of a closed part from a point: 4 pi inside, 0 outside, between on the
+// surface (van Oosterom and Strackee, "The solid angle of a plane triangle", 1983).
 [[nodiscard]] double solid_angle_of(const Scene& scene, const SurfacePart& part, const Vec3& point);
 
 }  // namespace earthshine::scenes

@@ -15,7 +15,7 @@ namespace {
 
 using base::pi;
 
-constexpr double near_sizes = 3.0;  // solid angle within this many times the longest edge
+constexpr double near_sizes = 3.0;  // solid-angle sampling up to this times the longest edge
 
 bool is_rectangle(const FlatEmitter& emitter) {
   return emitter.shape == FlatShape::Parallelogram &&
@@ -23,7 +23,7 @@ bool is_rectangle(const FlatEmitter& emitter) {
              1e-6 * glm::length(emitter.edge1) * glm::length(emitter.edge2);
 }
 
-// The rectangle of which `first` and `second` are the halves (0,1,2) and (0,2,3), if they are.
+// Merges `first` and `second` into a rectangle if they are its halves (0,1,2) and (0,2,3).
 bool joins(FlatEmitter& first, const FlatEmitter& second) {
   const Vec3 gap = first.corner + first.edge2 - (second.corner + second.edge1);
   const Vec3 side = first.edge1 + second.edge2 - second.edge1;
@@ -88,9 +88,9 @@ LightSample sample_flat(const FlatEmitter& emitter, const Vec3& point, double u,
   const Vec3 way = emitter.corner - point;
   const double longest2 =
       std::max(glm::dot(emitter.edge1, emitter.edge1), glm::dot(emitter.edge2, emitter.edge2));
-  const double height = -glm::dot(way, emitter.normal);  // of the point over the emitter's front
+  const double height = -glm::dot(way, emitter.normal);  // of the point over the front
   const bool is_near = glm::dot(way, way) < near_sizes * near_sizes * longest2;
-  // In the plane itself nothing is seen, and the formulas of the solid angle break down.
+  // In its own plane the emitter is invisible, and the solid-angle formulas break down.
   const bool beside = std::abs(height) < 1e-7 * std::sqrt(longest2);
   const bool has_formula = emitter.shape == FlatShape::Triangle || is_rectangle(emitter);
   if (spread == Spread::Best && is_near && !beside && has_formula) {
@@ -164,7 +164,7 @@ const FlatEmitter& EmitterSet::choose(double& u, double& probability) const {
   return pieces_[index];
 }
 
-// Exitance at a point of the emitter over its mean.
+// Exitance at a point of the emitter, relative to its mean.
 Rgb EmitterSet::relative_exitance(const FlatEmitter& emitter, const Vec3& point) const {
   if (emitter.textured_triangle == FlatEmitter::none) return Rgb(1.0);
   const Barycentric at = barycentric(point, emitter.corner, emitter.edge1, emitter.edge2);
@@ -218,7 +218,7 @@ EmittedRay EmitterSet::emit(double u, double v, double x, double y) const {
   double probability = 1.0;
   const FlatEmitter& emitter = choose(u, probability);
   Vec3 normal = emitter.normal;
-  if (emitter.two_sided) {  // half of the rays leave from either side
+  if (emitter.two_sided) {  // half of the rays leave each side
     if (x >= 0.5) normal = -normal;
     x = x >= 0.5 ? 2.0 * x - 1.0 : 2.0 * x;
   }

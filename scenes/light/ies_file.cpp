@@ -19,8 +19,8 @@ using base::Error;
 
 using Numbers = IesNumbers;
 
-constexpr std::size_t most_angles = 4096;                  // in one direction
-constexpr std::size_t most_values = std::size_t{1} << 20;  // in the table as the file has it
+constexpr std::size_t most_angles = 4096;                  // per direction
+constexpr std::size_t most_values = std::size_t{1} << 20;  // in the file's table
 constexpr double same_angle_deg = 1e-6;
 
 std::string upper_case(std::string_view text) {
@@ -37,7 +37,7 @@ std::string_view whole_line(const TextLines& lines) {
 }
 
 // Until 1991 the number after the ballast factor was a factor too; since 1995 it is reserved, and
-// since 2019 it says how the file was made.
+// since 2019 it describes how the file was made.
 bool second_factor_counts(const TextLines& lines, const std::string& version) {
   if (!version.starts_with("IESNA") && !version.starts_with("IES:")) return true;
   for (const std::string_view year : {"1986", "1991", "86", "91"}) {
@@ -53,7 +53,7 @@ bool second_factor_counts(const TextLines& lines, const std::string& version) {
 struct Head {
   bool second_factor = true;
   std::string description;
-  std::string tilt;  // what stands after TILT=
+  std::string tilt;  // text after TILT=
 };
 
 // Everything up to the TILT line.
@@ -116,7 +116,7 @@ void check_vertical(const std::vector<double>& angles, const Numbers& numbers) {
                "Where the luminaire was not measured and is dark, add angles with 0 cd");
 }
 
-// A table over part of the circle and its mirror image over the rest of twice that part.
+// Reflects a table over part of the circle to double its range.
 void mirror_planes(std::vector<double>& angles, std::vector<double>& candela, std::size_t rows) {
   const double edge = angles.back();
   for (std::size_t k = angles.size() - 1; k-- > 0;) {
@@ -139,7 +139,7 @@ void check_horizontal(const std::vector<double>& angles, const Numbers& numbers)
       "Where planes are missing, add them; the plane at 360 is that at 0");
 }
 
-// To the full circle, which begins at the first angle.
+// Extends to the full circle from the first angle.
 void unfold(std::vector<double>& angles, std::vector<double>& candela, std::size_t rows) {
   if (angles.size() == 1) {
     angles = {0.0, 360.0};
@@ -185,7 +185,7 @@ Luminaire parse_ies(std::string_view bytes, const std::string& file) {
   }
   const double unit_m = numbers.count("the type of units", 1, 2) == 1 ? 0.3048 : 1.0;
   for (const char* side : {"the opening's width", "the opening's length", "the opening's height"}) {
-    // Negative sizes stand for round openings.
+    // Negative sizes mean round openings.
     luminaire.opening_m = std::max(luminaire.opening_m, unit_m * std::abs(numbers.next(side)));
   }
   factor *= numbers.above_zero("the ballast factor");

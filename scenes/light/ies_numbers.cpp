@@ -70,7 +70,7 @@ std::string IesNumbers::rest() {
          "a file of IES LM-63 holds as many numbers as its counts announce",
          "Check the counts of angles");
   }
-  // Some programs close a file with a line END.
+  // Some programs end a file with a line END.
   while (lower_case(std::string(word_.text)) == "end") {
     if (!find()) return {};
   }

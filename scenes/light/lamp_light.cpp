@@ -35,10 +35,10 @@ FlatEmitter rectangle(const Lamp& lamp) {
           FlatShape::Parallelogram};
 }
 
-// Near a disk points that are even over its area leave noise without bound: of a floor one
-// thousandth of the radius away, one in a million of them gives half of the light. There they are
-// even over the solid angle of the square around it, and those beyond the disk give nothing. On the
-// axis both leave as much noise where the height is the radius (a sixth of the mean square).
+// Near a disk, points uniform over its area have unbounded noise: on a floor a thousandth of the
+// radius away, one in a million of them gives half of the light. There the samples are uniform in
+// the solid angle of the square around the disk, and samples beside the disk give 0. On the axis
+// both methods have equal noise where the height equals the radius (a sixth of the mean square).
 LightSample sample_disk(const Lamp& lamp, const Vec3& point, double u, double v, Spread spread) {
   const Vec3 way = lamp.position - point;
   const double radius2 = lamp.radius_m * lamp.radius_m;
@@ -61,14 +61,14 @@ LightSample sample_disk(const Lamp& lamp, const Vec3& point, double u, double v,
   return glm::dot(from_centre, from_centre) > radius2 ? LightSample{} : sample;
 }
 
-// Intensity in a unit direction away from the lamp, relative to intensity_cd.
+// Intensity in a unit direction from the lamp, relative to intensity_cd.
 double relative_intensity(const Lamp& lamp, const Vec3& direction) {
   if (lamp.kind == LampKind::Point) return 1.0;
   const double cosine = glm::dot(direction, lamp.axis);
   if (lamp.kind == LampKind::Spot) return spot_profile(lamp, cosine);
   const double along_c0 = glm::dot(direction, lamp.c0);
   const double along_c90 = glm::dot(direction, glm::cross(lamp.c0, lamp.axis));
-  // By the tangent: near the axis the cosine alone has lost half of the angle's digits.
+  // By the tangent: near the axis the cosine has lost half of the angle's digits.
   return lamp.photometry->relative(std::atan2(std::hypot(along_c0, along_c90), cosine),
                                    std::atan2(along_c90, along_c0));
 }
@@ -80,7 +80,7 @@ ShadowSegment shadow_segment(const LightSample& sample, const Vec3& point, const
   if (!std::isfinite(sample.distance_m)) return {sample.direction, sample.distance_m};
   const Vec3 way = point + sample.distance_m * sample.direction + sample.lift_m - origin;
   const double length_m = glm::length(way);
-  // What lies between the offsets of both surfaces: they touch there.
+  // The source lies between the offsets of both surfaces: they touch.
   if (glm::dot(way, sample.direction) <= 0.0) return {sample.direction, 0.0};
   return {way / length_m, length_m * (1.0 - short_of_it)};
 }
@@ -102,7 +102,7 @@ double spot_profile(const Lamp& lamp, double cos_angle) {
 
 namespace {
 
-// Of a lamp without size; relative(direction): its intensity that way, relative to intensity_cd.
+// Sample of a lamp without size; relative(direction): its intensity relative to intensity_cd.
 template <class Relative>
 LightSample sample_point(const Lamp& lamp, const Vec3& point, const Relative& relative) {
   LightSample sample;
@@ -195,7 +195,7 @@ std::optional<LampHit> hit_lamp(const Lamp& lamp, const Vec3& origin, const Vec3
   return LampHit{t, lamp.exitance / pi};
 }
 
-// 1 - cos written as 2 sin^2 keeps its digits for the Sun's small disc.
+// 2 sin^2 avoids the cancellation of 1 - cos for the Sun's small disc.
 Cone::Cone(const Vec3& axis, double half_angle_rad)
     : frame_(base::frame_around(axis)), most_(2.0 * std::pow(std::sin(half_angle_rad / 2), 2)) {}
 
@@ -225,7 +225,7 @@ LightSample thrown(const LightSample& sample, const FlatMirror& mirror, std::uin
   const double rise = glm::dot(sample.direction, mirror.normal);
   if (height <= 0.0 || rise <= 0.0) return {};
   const double to_mirror = height / rise;
-  if (to_mirror >= sample.distance_m) return {};  // the source is behind it
+  if (to_mirror >= sample.distance_m) return {};  // the source is on the other side
   const Vec3 from_centre = mirror.image(point) + to_mirror * sample.direction - mirror.centre;
   if (glm::dot(from_centre, from_centre) > mirror.radius_m * mirror.radius_m * (1.0 + 1e-9)) {
     return {};
@@ -235,8 +235,8 @@ LightSample thrown(const LightSample& sample, const FlatMirror& mirror, std::uin
 }
 
 // Light from d, within the angle a of the disc's middle s, meets the mirror's plane at h d / (d n)
-// from the image of a point at the height h: no more than 2 a h / ((s n) (s n - a)) from where that
-// of the middle does.
+// from the image of a point at the height h. This is at most 2 a h / ((s n) (s n - a)) from the
+// intersection for the middle.
 bool disc_may_be_thrown(const Vec3& direction, double angle, const FlatMirror& mirror,
                         const Vec3& point) {
   const double height = mirror.height_m(point), rise = glm::dot(direction, mirror.normal);

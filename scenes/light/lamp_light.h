@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a source of finite extent gives a point: one sample of its light, and where its flux goes.
+// Light sources of finite extent: sampled illuminance at a point, and emitted flux.
 #pragma once
 
 #include <array>
@@ -11,19 +11,19 @@
 
 namespace earthshine::scenes {
 
-// One shadowed sample of a source, seen from a point.
+// One sample of a source from a point, before the shadow test.
 struct LightSample {
   Vec3 direction{0.0};      // unit, toward the source
   double distance_m = 0.0;  // infinite for the sky
   Rgb normal_illuminance_lx{
-      0.0};  // on a plane facing `direction`, divided by the sample's density; nothing in between
-  std::uint32_t mirror = no_mirror;  // that throws it; the distance is that of the whole way
-  Vec3 lift_m{0.0};  // of a surface: off it, by its offset (surface_offset.h), toward the point
+      0.0};  // on a plane facing `direction`, divided by the sample's density; without occlusion
+  std::uint32_t mirror = no_mirror;  // that reflects it; distance_m is then the whole path
+  Vec3 lift_m{0.0};  // offset from the source's surface (surface_offset.h), toward the point
 };
 
-// The shadow ray of a point's sample that starts at `origin`, off the point's surface: it goes to
-// the same place of the source, or its image in a mirror, and stops short of it, which may be a
-// surface of the scene. reach_m is 0 where the source is at the point.
+// The shadow ray of a point's sample from `origin`, off the point's surface, to the same place of
+// the source, or its mirror image. It ends just before the source, which may be a surface of the
+// scene. reach_m is 0 if the source is at the point.
 struct ShadowSegment {
   Vec3 direction{0.0};
   double reach_m = 0.0;
@@ -31,43 +31,44 @@ struct ShadowSegment {
 [[nodiscard]] ShadowSegment shadow_segment(const LightSample& sample, const Vec3& point,
                                            const Vec3& origin);
 
-// The cosine of half the field, beyond which a spot lamp sends nothing.
+// Cosine of half the field, beyond which a spot lamp is dark.
 [[nodiscard]] double field_cosine(const Lamp& lamp);
-// Shape of a spot's intensity against the angle from its axis: 1 inside beam_deg, smoothstep in the
-// cosine, 0 outside field_deg. Its flux is I 2 pi (1 - (cos(beam/2) + cos(field/2)) / 2) exactly.
+// Relative intensity of a spot by the angle from its axis: 1 inside beam_deg, a smoothstep in the
+// cosine, 0 outside field_deg. Its flux is exactly I 2 pi (1 - (cos(beam/2) + cos(field/2)) / 2).
 [[nodiscard]] double spot_profile(const Lamp& lamp, double cos_angle);
 
-// The two cosines, for who asks of a spot lamp often.
+// Precomputed cosines of a spot lamp.
 struct SpotCone {
   double beam_cosine, field_cosine;
   [[nodiscard]] double profile(double cos_angle) const;
 };
 [[nodiscard]] SpotCone spot_cone(const Lamp& lamp);
 
-// What (u, v) are even over: what leaves least noise where the point is, or always the same points
-// of the source, wherever it is seen from.
+// Measure in which (u, v) are uniform: the one with least noise at the point, or always the
+// source's area, so that the points do not depend on the receiver.
 enum class Spread { Best, OverArea };
 
-// (u, v) in [0,1)^2 choose the point of a rectangle or disk; other lamps do not use them.
+// (u, v) in [0,1)^2 select the point of a rectangle or disk; other lamps ignore them.
 [[nodiscard]] LightSample sample_lamp(const Lamp& lamp, const Vec3& point, double u, double v,
                                       Spread spread = Spread::Best);
 
-// The same of a spot lamp, whose cone is `cone`.
+// Sample of a spot lamp with precomputed `cone`.
 [[nodiscard]] LightSample sample_spot(const Lamp& lamp, const SpotCone& cone, const Vec3& point);
 
-// Of a distant lamp 0: how much of its light is caught depends on the surfaces.
+// 0 for a distant lamp: the light received depends on the surfaces.
 [[nodiscard]] Rgb lamp_flux_lm(const Lamp& lamp);
 
-// Not of a distant lamp. A ray leaving the lamp, and its share of the flux relative to the mean ray (1 on average).
+// A ray that leaves the lamp, with its flux relative to the mean ray (1 on average). Not for a
+// distant lamp.
 struct EmittedRay {
   Vec3 origin, direction;
   double weight = 1.0;
-  Vec3 lift_m{0.0};  // of a surface: off it, by its offset (surface_offset.h)
+  Vec3 lift_m{0.0};  // offset from the source's surface (surface_offset.h)
 };
 [[nodiscard]] EmittedRay emit_from_lamp(const Lamp& lamp, double u, double v, double x, double y);
 
-// Distance at which a ray meets the shining side of a rectangle or disk lamp and its radiance
-// there; nothing for lamps without a surface.
+// Distance at which a ray hits the emitting side of a rectangle or disk lamp, and the radiance
+// there; no value for lamps without a surface.
 struct LampHit {
   double distance_m;
   Rgb radiance;
@@ -75,13 +76,13 @@ struct LampHit {
 [[nodiscard]] std::optional<LampHit> hit_lamp(const Lamp& lamp, const Vec3& origin,
                                               const Vec3& direction);
 
-// Light that reaches a point from a distant disc of directions, sampled uniformly over its solid
-// angle.
+// Light from a distant disc of directions, sampled uniformly in its solid angle.
 class Cone {
  public:
   Cone(const Vec3& axis, double half_angle_rad);
   [[nodiscard]] Vec3 sample(double u, double v) const;
-  // The same in two steps: coordinates about the axis, which cones as wide share, to a direction.
+  // Samples in two steps: local coordinates about the axis, common to cones of the same width, then
+  // the direction.
   [[nodiscard]] Vec3 local(double u, double v) const;
   [[nodiscard]] Vec3 at(const Vec3& local) const { return frame_.to_world(local); }
 
@@ -94,30 +95,30 @@ class Cone {
 }
 [[nodiscard]] double cone_solid_angle_sr(double half_angle_rad);
 
-// Whether light may come from outside of all surfaces: Sun, Earth or a distant lamp.
+// Whether light may arrive from outside the scene: Sun, Earth or a distant lamp.
 [[nodiscard]] bool has_light_outside(const Scene& scene);
 
-// Light of a source that a flat mirror throws onto a point: that of the source's image.
-
-// sample: of the source itself, as the mirror's image of `point` sees it. What comes out is seen
-// from the point; its light is 0 where the mirror lies elsewhere. The mirror's own share is not in
-// it: RayQuery::light_shares has that of the very place. Flat mirrors keep areas and angles, so
-// that the whole way takes the place of the distance.
+// Light of a source that a flat mirror reflects to a point.
+//
+// sample: of the source, as seen from the mirror image of `point`. The result is seen from the
+// point; its light is 0 if the path misses the mirror. It excludes the mirror's reflectance, which
+// RayQuery::light_shares applies at the hit point. Flat mirrors preserve areas and angles, so that
+// the length of the whole path replaces the distance.
 [[nodiscard]] LightSample thrown(const LightSample& sample, const FlatMirror& mirror,
                                  std::uint32_t number, const Vec3& point);
 
-// False where the mirror lies elsewhere for all of a distant disc of that angle, in radians: told
-// without a sample.
+// False if no path from a distant disc of this angle, in radians, meets the mirror; needs no
+// sample.
 [[nodiscard]] bool disc_may_be_thrown(const Vec3& direction, double angle, const FlatMirror& mirror,
                                       const Vec3& point);
 
-// What tells the kinds of lamps apart, a row each; their light is in lamp_light.h, their keys in
-// scenes/read/lamp.cpp.
+// Properties that differ between kinds of lamps, one row each. Their light is in lamp_light.h,
+// their keys in scenes/read/lamp.cpp.
 
 struct LampRow {
-  std::string_view type;  // as scene files have it
-  // Of the surface that shines, by its exitance: m^2, and the radius of the ball around it in m.
-  // Null for what shines from a point, by its intensity.
+  std::string_view type;  // name in scene files
+  // Emitting surface, for lamps with an exitance: area in m^2, and radius of the bounding sphere in
+  // m. Null for lamps with an intensity.
   double (*area)(const Lamp&);
   double (*radius)(const Lamp&);
 };
@@ -140,7 +141,7 @@ inline constexpr std::array<LampRow, 6> lamp_rows = {{
 [[nodiscard]] constexpr const LampRow& row_of(LampKind kind) {
   return lamp_rows[static_cast<std::size_t>(kind)];
 }
-// A wide lamp has a surface: it can be seen, hidden in part, distributed.
+// A wide lamp has a surface: it can be visible, partly hidden, distributed.
 [[nodiscard]] constexpr bool is_wide(LampKind kind) { return row_of(kind).area != nullptr; }
 
 }  // namespace earthshine::scenes

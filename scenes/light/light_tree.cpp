@@ -14,7 +14,7 @@ namespace {
 
 using base::pi;
 
-// Nearer than this, in square metres, no bound is asked for.
+// Below this squared distance, in square metres, no bound is computed.
 constexpr double nearest2 = 1e-12;
 
 // cos and sin of max(0, a - b) for angles from 0 to pi (Conty Estevez and Kulla 2018).
@@ -30,7 +30,7 @@ Angle of_cosine(double cosine) {
   return {c, std::sqrt(1.0 - c * c)};
 }
 
-// The smallest cone around two (Conty Estevez and Kulla 2018).
+// The smallest cone that contains two cones (Conty Estevez and Kulla 2018).
 void join_axes(LightBounds& a, const LightBounds& b) {
   const double between = std::acos(std::clamp(glm::dot(a.axis, b.axis), -1.0, 1.0));
   if (std::min(between + b.axes_rad, pi) <= a.axes_rad) return;
@@ -60,7 +60,7 @@ LightBounds joined(LightBounds a, const LightBounds& b) {
   return a;
 }
 
-// Whether a ray meets a box on its way to reach_m.
+// Whether a ray hits a box before reach_m.
 bool meets(const Vec3& from_centre, const Vec3& direction, const Vec3& half, double reach_m) {
   const double margin = 1e-9 * (1.0 + base::max_component(glm::abs(from_centre)));  // flat boxes
   double near = 0.0, far = reach_m;
@@ -86,7 +86,7 @@ LightBounds bounds_of(const Lamp& lamp) {
   bounds.intensity_cd = base::max_component(lamp.intensity_cd);
   switch (lamp.kind) {
     case LampKind::Point:
-    case LampKind::Distant:  // stands in no tree
+    case LampKind::Distant:  // not in the tree
       break;
     case LampKind::Spot:
       bounds.reach_rad = base::radians(lamp.field_deg / 2);
@@ -126,7 +126,7 @@ std::uint32_t LightTree::build(const std::vector<LightBounds>& lights, std::uint
                                std::uint32_t* last) {
   const auto index = static_cast<std::uint32_t>(nodes_.size());
   LightBounds bounds = lights[*first];
-  Vec3 least(bounds.low + bounds.high), most = least;  // twice the middles
+  Vec3 least(bounds.low + bounds.high), most = least;  // twice the centres
   for (const std::uint32_t* k = first + 1; k < last; ++k) {
     bounds = joined(bounds, lights[*k]);
     least = glm::min(least, lights[*k].low + lights[*k].high);
@@ -203,8 +203,7 @@ void LightTree::choose(const Receiver& receiver, double u, double share,
     std::push_heap(pieces.begin(), pieces.begin() + count, lower);
   };
   push(0);
-  // Forks are opened, the one that may give most first, until no piece may give more than the
-  // share.
+  // Splits the inner node with the largest bound until no bound exceeds the share.
   while (count > 0 && pieces[0].value.bound > share * total && count < most_pieces) {
     const Piece piece = pieces[0];
     std::pop_heap(pieces.begin(), pieces.begin() + count--, lower);
@@ -224,7 +223,7 @@ void LightTree::choose(const Receiver& receiver, double u, double share,
             [](const Piece& a, const Piece& b) { return a.node < b.node; });
   const double draws =
       std::ceil(std::min(rest / std::max(share * total, rest * 1e-9), 1.0 / share));
-  double before = 0.0;  // on the line, in units of draws
+  double before = 0.0;  // cumulative weight, in units of draws
   double next = u;      // the next draw
   for (std::size_t k = 0; k < count; ++k) {
     const double length = draws * pieces[k].value.estimate / rest;
@@ -258,7 +257,7 @@ std::optional<LightTree::Pick> LightTree::descend(const Receiver& receiver, std:
   while (nodes_[node].right != 0) {
     const double a = value_of(nodes_[node + 1], receiver).estimate;
     const double b = value_of(nodes_[nodes_[node].right], receiver).estimate;
-    if (!(a + b > 0.0)) return std::nullopt;  // seen closer, nothing of it reaches the receiver
+    if (!(a + b > 0.0)) return std::nullopt;  // by its tighter bound, no light reaches the receiver
     const double share = a / (a + b);
     const bool left = t < share || !(b > 0.0);
     t = std::min(left ? t / share : (t - share) / (1.0 - share), 1.0);

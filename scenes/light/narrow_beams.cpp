@@ -11,7 +11,7 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr int peak_rays = 64, beam_rays = 256;
-// Half of the flux of a diffuse luminaire needs 45 degrees, 5 degrees hold 0.8 % of it.
+// A diffuse luminaire has half of its flux within 45 degrees and 0.8 % within 5 degrees.
 constexpr double peak_half_angle_deg = 5.0, peak_share = 1.0 / 12.0;
 constexpr std::size_t neighbours = 8;
 
@@ -41,9 +41,9 @@ bool is_peaked(const std::vector<Beam::Ray>& rays) {
   });
 }
 
-// The cap up to the 8th nearest ray holds eight rays.
+// The cap out to the 8th nearest ray contains eight rays.
 void find_solid_angles(std::vector<Beam::Ray>& rays) {
-  std::vector<double> square(rays.size());  // of chords, which have more digits than cosines
+  std::vector<double> square(rays.size());  // of chords, which are more accurate than cosines
   const std::size_t k = std::min(neighbours, rays.size() - 1);
   for (Beam::Ray& ray : rays) {
     for (std::size_t n = 0; n < rays.size(); ++n) {

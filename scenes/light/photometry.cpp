@@ -9,14 +9,14 @@
 namespace earthshine::scenes {
 namespace {
 
-// The interval of an increasing list that holds x, which lies between its ends.
+// The interval of an increasing list that contains x, which must be in its range.
 std::size_t interval(const std::vector<double>& list, double x) {
   const auto above = std::upper_bound(list.begin() + 1, list.end() - 1, x);
   return static_cast<std::size_t>(above - list.begin()) - 1;
 }
 
-// Angle between a and b at which the integral of (at_a + slope (t - a)) sin t has come to `share`
-// of itself: Newton's method, kept within the bracket by halving.
+// Angle between a and b at which the integral of (at_a + slope (t - a)) sin t reaches `share` of
+// its total: Newton's method with bisection as a safeguard.
 double invert_band(double a, double b, double at_a, double at_b, double share) {
   const double slope = (at_b - at_a) / (b - a);
   const auto integral = [&](double t) {
@@ -61,7 +61,7 @@ void Photometry::add_up() {
     for (std::size_t k = 0; k < planes; ++k) {
       const double per_rad =
           at(k, row) * (std::cos(a) - mean_cosine) + at(k, row + 1) * (mean_cosine - std::cos(b));
-      band_per_rad_.push_back(std::max(0.0, per_rad));  // of bands so thin that rounding rules
+      band_per_rad_.push_back(std::max(0.0, per_rad));  // rounding dominates very thin bands
       if (k > 0) {
         const double both = band_per_rad_.back() + band_per_rad_[band_per_rad_.size() - 2];
         flux += 0.5 * both * (horizontal_[k] - horizontal_[k - 1]);
@@ -75,7 +75,7 @@ void Photometry::add_up() {
 }
 
 double Photometry::relative(double theta_rad, double phi_rad) const {
-  // A direction along the edge of the table may come out beyond it by rounding.
+  // Rounding may put a direction at the edge of the table slightly outside.
   constexpr double rounding = 1e-9;
   if (theta_rad < vertical_.front() - rounding || theta_rad > vertical_.back() + rounding) {
     return 0.0;

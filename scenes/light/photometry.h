@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Luminous intensity as measured over a grid of directions, bilinear in the angles between them.
+// Measured luminous intensity on a grid of directions, interpolated bilinearly in the angles.
 #pragma once
 
 #include <cstddef>
@@ -7,21 +7,21 @@
 
 namespace earthshine::scenes {
 
-// Angles as in photometry of type C (IES LM-63, CIE 102): the vertical one, theta, from the axis on
-// which the luminaire was aimed, the horizontal one, phi, about it. Values are relative to the
-// greatest of the table. Dark where theta lies outside the table.
+// Angles as in photometry of type C (IES LM-63, CIE 102): the vertical angle theta from the
+// luminaire's axis, the horizontal angle phi about it. Values are relative to the table's maximum.
+// The intensity is 0 at theta outside the table.
 class Photometry {
  public:
-  // vertical_deg: strictly increasing in [0, 180], two at least. horizontal_deg: strictly
-  // increasing, from first to first + 360, two at least. candela[plane * vertical_deg.size() +
-  // row]: finite, none negative, one above 0.
+  // vertical_deg: strictly increasing in [0, 180], at least two. horizontal_deg: strictly
+  // increasing, from first to first + 360, at least two. candela[plane * vertical_deg.size() +
+  // row]: finite, not negative, at least one positive.
   Photometry(std::vector<double> vertical_deg, std::vector<double> horizontal_deg,
              std::vector<double> candela);
 
   [[nodiscard]] double peak_cd() const { return peak_cd_; }
-  // Flux of a luminaire whose greatest intensity is 1 cd: the integral of relative(theta, phi) over
-  // all directions, exact for the interpolated table. In theta between a and b = a + 2 h, with
-  // m = a + h and S = cos m sin h / h: row a weighs cos a - S, row b weighs S - cos b.
+  // Flux of a luminaire with a maximum of 1 cd: the integral of relative(theta, phi) over all
+  // directions, exact for the interpolated table. For theta between a and b = a + 2 h, with m = a +
+  // h and S = cos m sin h / h: row a has the weight cos a - S, row b the weight S - cos b.
   [[nodiscard]] double solid_angle_sr() const { return solid_angle_sr_; }
 
   [[nodiscard]] double relative(double theta_rad, double phi_rad) const;
@@ -35,7 +35,7 @@ class Photometry {
   [[nodiscard]] const std::vector<double>& vertical_rad() const { return vertical_; }
   [[nodiscard]] const std::vector<double>& horizontal_rad() const { return horizontal_; }
   [[nodiscard]] const std::vector<double>& values() const { return value_; }
-  [[nodiscard]] bool is_round() const { return is_round_; }  // does not depend on phi
+  [[nodiscard]] bool is_round() const { return is_round_; }  // independent of phi
 
  private:
   [[nodiscard]] double at(std::size_t plane, std::size_t row) const {
@@ -48,8 +48,8 @@ class Photometry {
   double peak_cd_ = 0.0;
   double solid_angle_sr_ = 0.0;
   bool is_round_ = true;
-  // Of the band between two vertical angles: what each plane gives per radian of phi; the flux from
-  // the first plane to each, and from the first band to the end of each.
+  // For each band between two vertical angles: flux per radian of phi in each plane; cumulative
+  // flux from the first plane to each plane, and from the first band to the end of each band.
   std::vector<double> band_per_rad_, flux_to_plane_, flux_to_band_;
 };
 

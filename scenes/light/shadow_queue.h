@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shadow rays that wait until a packet of them can be traced together.
+// Collects shadow rays and traces them in packets.
 #pragma once
 
 #include <algorithm>
@@ -12,19 +12,19 @@
 
 namespace earthshine::scenes {
 
-// Item: what a ray carries to whoever takes the result. One object per thread.
+// Item: the caller's data of a ray. One object per thread.
 template <class Item>
 class ShadowQueue {
  public:
-  // most: rays that wait. More than a packet are traced by ascending `order`, since rays to one
-  // light go the same way.
+  // most: capacity. Above one packet, rays are sorted by `order`, since rays to one light are
+  // coherent.
   explicit ShadowQueue(const RayQuery& query, std::size_t most = RayPacket::width)
       : query_(query), most_(most) {
     waiting_.reserve(most);
   }
 
-  // A ray from `origin`, which lies off the surface at `point`, to a source's sample there; none
-  // where nothing can lie between. take: see trace().
+  // Adds a ray from `origin`, which lies off the surface at `point`, to a source's sample. Adds
+  // none if the source is at the point (ShadowSegment::reach_m is 0). take: see trace().
   template <class Take>
   void add(const LightSample& sample, const Vec3& point, const Vec3& origin, const Item& item,
            const Take& take, std::size_t order = 0) {
@@ -34,7 +34,7 @@ class ShadowQueue {
     if (waiting_.size() == most_) trace(take);
   }
 
-  // Traces all that wait. Calls take(item, share of the light that arrives) for each.
+  // Traces all queued rays. Calls take(item, share of the light that arrives) for each.
   template <class Take>
   void trace(const Take& take) {
     constexpr std::size_t width = RayPacket::width;
@@ -59,7 +59,7 @@ class ShadowQueue {
     waiting_.clear();
   }
 
-  [[nodiscard]] std::uint64_t rays() const { return rays_; }  // traced so far
+  [[nodiscard]] std::uint64_t rays() const { return rays_; }  // number of rays traced so far
 
  private:
   struct Ray {

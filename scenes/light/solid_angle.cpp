@@ -9,7 +9,7 @@ namespace {
 
 using base::pi;
 
-// Part of b across the unit vector a, of unit length.
+// Normalised component of b perpendicular to the unit vector a.
 Vec3 across(const Vec3& a, const Vec3& b) {
   const Vec3 part = b - glm::dot(a, b) * a;
   const double length2 = glm::dot(part, part);
@@ -24,7 +24,7 @@ double angle_between(const Vec3& a, const Vec3& b) {
 
 SolidAngleSample sample_rectangle(const Vec3& point, const Vec3& corner, const Vec3& edge_u,
                                   const Vec3& edge_v, double u, double v) {
-  // Names as in the paper; coordinates along the edges and, z, toward the point.
+  // Names as in the paper; coordinates along the edges, z toward the point.
   const double width = glm::length(edge_u), height = glm::length(edge_v);
   const Vec3 x = edge_u / width, y = edge_v / height, d = corner - point;
   Vec3 z = glm::cross(x, y);

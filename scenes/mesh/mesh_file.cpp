@@ -22,7 +22,7 @@ namespace {
 using base::Blame;
 using base::Error;
 
-// The readers check as they go; this is the wall that the rest of the program relies on.
+// Final check of all readers' results; the rest of the program relies on it.
 void check_mesh(const Mesh& mesh) {
   const base::Location where{mesh.path.string()};
   if (mesh.polygons.empty()) {
@@ -60,7 +60,7 @@ Mesh read_mesh(const std::filesystem::path& path, const std::filesystem::path& s
                 "known are .obj, .gltf, .glb, .ply and .stl", "Convert it to one of these");
   }
   const std::string bytes = base::read_input_file(path, max_mesh_bytes, asked_at);
-  base::check_room(bytes.size(), path.string());  // numbers take about as much as their text
+  base::check_room(bytes.size(), path.string());  // numbers need about as much memory as their text
   const std::filesystem::path folders[] = {scene_folder, path.parent_path()};
   Mesh mesh;
   if (ending == ".obj") {

@@ -42,24 +42,24 @@ Rgb read_colour(const TextLines& lines, Range range) {
   return colour;
 }
 
-// A material as the library has it.
+// A material of an MTL library.
 struct MtlMaterial {
   std::string name;
   base::Location where;
-  std::optional<Rgb> diffuse, emitted;  // without a line 0, or 1 beside a texture
+  std::optional<Rgb> diffuse, emitted;  // default 0, or 1 with a texture
   Rgb specular{0.0};
   std::optional<double> shininess;
-  std::optional<double> dissolve;  // d: share that is there; 1 - Tr
-  Rgb filter{1.0};                 // Tf: colour of what passes
+  std::optional<double> dissolve;  // d: coverage; 1 - Tr
+  Rgb filter{1.0};                 // Tf: transmitted colour
   double ior = 1.0;
   int illumination = 2;  // illum
   MaterialMaps maps;
 };
 
-// From here on a highlight is as sharp as the format has it: what is reflected is a mirror's.
+// From this exponent on, the sharpest of the format, the highlight is a mirror reflection.
 constexpr double sharpest = 1000.0;
 
-// docs/models.md has this map as a table.
+// docs/models.md has this mapping as a table.
 Material material_of(const MtlMaterial& source) {
   Material material;
   const MaterialMaps& maps = source.maps;
@@ -79,7 +79,7 @@ Material material_of(const MtlMaterial& source) {
   if (reflects_surroundings && source.shininess.value_or(sharpest) >= sharpest) {
     material.mirror = there * glm::min(source.specular, Rgb(1.0));
   } else if (reflects_surroundings) {
-    // All that is reflected, blurred as the highlight is: the lobe's albedo is Ks.
+    // All reflected light is blurred by the highlight's lobe: the lobe's albedo is Ks.
     material.specular = there * source.specular * (material.shininess + 2.0) / 2.0;
   } else if (model >= 2) {
     material.specular = there * source.specular;
@@ -100,7 +100,7 @@ class MtlReader {
         path_(path),
         mesh_(mesh),
         maps_(path, folders, mesh.files, mesh.warnings) {
-    // Those of the libraries before.
+    // Materials of previous libraries.
     for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
       places_.emplace(mesh.materials[i].name, i);
     }
@@ -133,7 +133,7 @@ class MtlReader {
     return std::find(std::begin(used), std::end(used), keyword) != std::end(used);
   }
 
-  // Ambient light and the sharpness of reflection maps change nothing here.
+  // Ambient light and the sharpness of reflection maps have no effect in this program.
   [[nodiscard]] static bool is_neutral(std::string_view keyword) {
     return keyword == "Ka" || keyword == "map_Ka" || keyword == "sharpness";
   }
@@ -148,7 +148,7 @@ class MtlReader {
                 "newmtl is followed by a name");
   }
 
-  // Of materials of one name the first counts, as everywhere where materials are looked for.
+  // The first of several materials with one name is used, as everywhere.
   void end() {
     if (!material_) return;
     const auto [first, fresh] = places_.emplace(material_->name, mesh_.materials.size());
@@ -169,7 +169,8 @@ class MtlReader {
     if (keyword == "Ke") material_->emitted = read_colour(lines_, at_least_zero);
     if (keyword == "Ns") material_->shininess = read_colour(lines_, {0.0, 1e6}).r;
     if (keyword == "Ni") material_->ior = std::max(1.0, read_colour(lines_, {0.0, 10.0}).r);
-    // "d -halo f": thinner in its middle, which nothing here does. Where both stand, d decides.
+    // "d -halo f", thinner in the middle, is not supported. If both are present, the plain d is
+    // used.
     const bool plain = words.size() > 1 && number_in(words[1].text).has_value();
     if (keyword == "d" || keyword == "Tr" || keyword == "Tf") {
       if (!plain) {
@@ -195,7 +196,7 @@ class MtlReader {
     ++passed_over_[fmt::format("{} {}", keyword, bare ? "without a file" : "with options")];
   }
 
-  // Models 0 to 9; 10 is of shadows alone.
+  // Models 0 to 9; model 10 only concerns shadows.
   void read_model() {
     const double model = lines_.number(std::size_t{1});
     if (model >= 0.0 && model <= 9.0 && model == std::floor(model)) {
@@ -228,7 +229,7 @@ class MtlReader {
   Mesh& mesh_;
   MtlMaps maps_;
   std::optional<MtlMaterial> material_;
-  std::unordered_map<std::string, std::size_t> places_;  // of materials by name, in the mesh's list
+  std::unordered_map<std::string, std::size_t> places_;  // index of each material by name
   std::string first_repeated_;
   std::size_t repeated_ = 0;
   std::map<std::string, std::size_t> passed_over_;
@@ -243,7 +244,7 @@ void parse_mtl(std::string_view text, const std::filesystem::path& path,
 
 namespace {
 
-// A name with spaces, if there is such a file, else several names.
+// A name with spaces if such a file exists, else several names.
 std::vector<std::filesystem::path> paths_of(const MaterialLibrary& library, const Mesh& mesh,
                                             std::span<const std::filesystem::path> folders) {
   const std::filesystem::path folder = mesh.path.parent_path();
@@ -272,7 +273,7 @@ void list_map_files(Mesh& mesh, std::span<const std::filesystem::path> folders) 
       for (const auto& path : paths_of(library, mesh, folders)) {
         list_map_files(base::read_input_file(path, max_library_bytes, library.where), path, found);
       }
-    } catch (const Error&) {  // said once it is read, if ever it is
+    } catch (const Error&) {  // reported when it is read
     }
   }
   mesh.files.insert(mesh.files.end(), found.begin(), found.end());
@@ -281,7 +282,7 @@ void list_map_files(Mesh& mesh, std::span<const std::filesystem::path> folders) 
 void read_material_libraries(Mesh& mesh, std::span<const std::filesystem::path> folders) {
   const std::vector<MaterialLibrary> libraries = std::move(mesh.libraries);
   mesh.libraries.clear();
-  std::set<std::filesystem::path> read;  // some programs name one with every object
+  std::set<std::filesystem::path> read;  // some programs write mtllib with every object
   for (const MaterialLibrary& library : libraries) {
     for (const std::filesystem::path& path : paths_of(library, mesh, folders)) {
       if (!read.insert(path.lexically_normal()).second) continue;

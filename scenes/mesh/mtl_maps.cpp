@@ -16,10 +16,10 @@ namespace {
 
 struct Option {
   std::string_view name;
-  std::size_t least, most;  // numbers after it, or one word
-  bool changes_nothing;     // here
+  std::size_t least, most;  // number of values
+  bool changes_nothing;     // in this program
 };
-// Of the format's text. -bm is of bump maps, -imfchan names the channel that a mask is taken from.
+// From the format's text. -bm is for bump maps; -imfchan names the channel of a mask.
 constexpr Option options[] = {
     {"-s", 1, 3, false},      {"-o", 1, 3, false},     {"-clamp", 1, 1, false},
     {"-t", 1, 3, true},       {"-blendu", 1, 1, true}, {"-blendv", 1, 1, true},
@@ -40,11 +40,11 @@ bool MtlMaps::read(const TextLines& line, bool is_mask, TextureMap& map) {
         std::find_if(std::begin(options), std::end(options),
                      [&](const Option& known) { return known.name == words[at].text; });
     if (option == std::end(options)) return false;
-    // No word is left for the option's value and a file's name.
+    // Too few words for the option's values and a file name.
     if (at + option->least + 1 >= words.size()) return false;
     std::vector<double> numbers;
     std::size_t used = 1;
-    // Numbers as long as there are some: "-s 2 floor.png" has one.
+    // Values may be fewer: "-s 2 floor.png" has one.
     for (; used <= option->most && at + used < words.size(); ++used) {
       if (used > option->least && !number_in(words[at + used].text)) break;
       if (option->most > 1) numbers.push_back(line.number(words[at + used]));
@@ -67,7 +67,7 @@ bool MtlMaps::read(const TextLines& line, bool is_mask, TextureMap& map) {
     at += used;
   }
   if (at >= words.size()) return false;
-  // The rest of the line: names may have blanks.
+  // The rest of the line: names may contain blanks.
   const char* const first = words[at].text.data();
   const char* const last = words.back().text.data() + words.back().text.size();
   reading.name.assign(first, last);
@@ -78,8 +78,8 @@ bool MtlMaps::read(const TextLines& line, bool is_mask, TextureMap& map) {
     files_.push_back(path);
     return base::read_input_file(path, max_mesh_bytes, where);
   });
-  // v runs up in these files, and down from the upper edge here: with w = 1 - v and the format's
-  // v' = o + s v, w' = 1 - v' = (1 - o - s) + s w.
+  // v points up in these files, here down from the upper edge: with w = 1 - v and the format's v' =
+  // o + s v, w' = 1 - v' = (1 - o - s) + s w.
   TextureTransform transform;
   transform.turn = glm::dmat2(scale.x, 0.0, 0.0, scale.y);
   transform.shift = {shift.x, 1.0 - shift.y - scale.y};
@@ -99,7 +99,7 @@ void list_map_files(std::string_view text, const std::filesystem::path& library,
     const bool names_picture =
         keyword.starts_with("map_") || std::ranges::find(others, keyword) != std::end(others);
     if (!names_picture || !seen.emplace(lines.argument()).second) continue;
-    // The name is behind options, and may have blanks.
+    // The name follows the options and may contain blanks.
     for (std::size_t k = 1; k < std::min(words.size(), most_words); ++k) {
       const char* const last = words.back().text.data() + words.back().text.size();
       std::string name(words[k].text.data(), last);

@@ -21,21 +21,21 @@ class MtlMaps {
           std::vector<std::filesystem::path>& files, std::vector<std::string>& warnings)
       : library_(std::move(library)), folders_(folders), files_(files), shelf_(warnings) {}
 
-  // The texture of a line: its options -s, -o and -clamp, and its file beside the library or in the
-  // folders. False for another option that changes what it shows, and without a file; no texture,
-  // and a warning, for a file that cannot be read. Throws base::Error (Input) for an option's value
-  // that is none.
+  // Reads the texture of a line: options -s, -o and -clamp, and its file beside the library or in
+  // the folders. False for other options that change the texture, and without a file. A file that
+  // cannot be read gives a warning and no texture. Throws base::Error (Input) for invalid option
+  // values.
   [[nodiscard]] bool read(const TextLines& line, bool is_mask, TextureMap& map);
 
  private:
   std::filesystem::path library_;
   std::span<const std::filesystem::path> folders_;
-  std::vector<std::filesystem::path>& files_;  // those that were asked for
+  std::vector<std::filesystem::path>& files_;  // all requested files
   PictureShelf shelf_;
 };
 
-// Adds the files that there are of all lines that name a picture, wherever they lie: bump maps and
-// the like, too.
+// Adds the existing files of all lines that reference a picture, including bump maps and other
+// unused ones.
 void list_map_files(std::string_view text, const std::filesystem::path& library,
                     std::vector<std::filesystem::path>& files);
 

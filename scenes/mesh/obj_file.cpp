@@ -19,8 +19,7 @@ namespace {
 using base::Blame;
 using base::Error;
 
-// What OBJ files may hold besides faces: texture, normals, smoothing, lines, points, curves,
-// display hints.
+// Other keywords of OBJ files: texture, normals, smoothing, lines, points, curves, display hints.
 constexpr std::string_view passed_over[] = {
     "vt",       "vn",     "vp",         "s",         "l",    "p",    "mg",   "bevel", "c_interp",
     "d_interp", "lod",    "deg",        "cstype",    "bmat", "step", "curv", "curv2", "surf",
@@ -74,7 +73,7 @@ class ObjReader {
   }
 
  private:
-  // Lines of a kind follow each other by the million.
+  // Caches the last keyword: lines of one kind follow each other by the million.
   void count_unused(std::string_view keyword) {
     if (last_unused_ == nullptr || last_keyword_ != keyword) {
       last_keyword_ = keyword;
@@ -84,7 +83,7 @@ class ObjReader {
   }
 
   void read_vertex() {
-    // After x y z there may be a weight, a colour, or both.
+    // A weight, a colour, or both may follow x y z.
     mesh_.vertices.push_back(lines_.vector());
     if (mesh_.vertices.size() >= no_index) {
       throw Error(Blame::Input, lines_.where(), "too many vertices", "a mesh has fewer than 2^32");
@@ -106,7 +105,8 @@ class ObjReader {
     mesh_.normals.push_back(sound ? normal : glm::vec3(0.0F));
   }
 
-  // Of use only with a library, whose materials may have textures. v runs up in these files.
+  // Texture coordinates are useful only with a library, whose materials may have textures. v points
+  // up in these files.
   void read_coordinates() {
     count_unused("vt");
     const bool has_v = lines_.words().size() > 2;
@@ -141,7 +141,7 @@ class ObjReader {
     add_polygon(mesh_, corners_, part_set(), material_, static_cast<std::uint32_t>(lines_.line()));
   }
 
-  // "v", "v/vt", "v//vn" or "v/vt/vn"; v counts from 1, or from the last vertex with -1.
+  // "v", "v/vt", "v//vn" or "v/vt/vn"; v counts from 1, or backward from the last vertex with -1.
   // `coordinates`: vt, `normal`: vn, or 0.
   std::uint32_t vertex_of(const Word& word, std::int64_t& coordinates, std::int64_t& normal) {
     const std::size_t slash = word.text.find('/');
@@ -171,7 +171,7 @@ class ObjReader {
     return static_cast<std::uint32_t>(number > 0 ? number - 1 : count + number);
   }
 
-  // A corner whose coordinates or normal are not there has none: often nobody misses them.
+  // A corner with an invalid index of coordinates or normal has none: they are often unused.
   [[nodiscard]] static std::uint32_t attribute_of(std::int64_t number, std::size_t size) {
     const auto count = static_cast<std::int64_t>(size);
     if (number < 0) number += count + 1;
@@ -200,7 +200,7 @@ class ObjReader {
                   "mtllib is followed by a file name");
     }
     const base::Location where = lines_.where(words[1]);
-    // Checked although it may never be read: a mesh that points elsewhere should be noticed.
+    // Checked even if it is never read, so that a mesh with foreign paths is noticed.
     mesh_.files.push_back(
         confined_path(mesh_.path.parent_path(), lines_.argument(), folders_, where));
     mesh_.libraries.push_back({std::string(lines_.argument()), where});
@@ -220,7 +220,7 @@ class ObjReader {
   bool shaped_by_normals_;
   Mesh mesh_;
   std::string last_keyword_;
-  std::size_t* last_unused_ = nullptr;  // of that keyword, in mesh_
+  std::size_t* last_unused_ = nullptr;  // counter of that keyword, in mesh_
   std::vector<std::string> groups_;
   std::string object_;
   std::uint32_t part_set_ = no_index;

@@ -82,7 +82,7 @@ void read_header_line(const TextLines& lines, Header& header, bool& has_format) 
 
 Header read_header(std::string_view bytes, const std::string& file) {
   constexpr std::string_view last = "end_header";
-  // The word may also stand in a comment; the header's end is a line of its own.
+  // A comment may contain the word; the header's end is a line of its own.
   std::size_t end = bytes.find(last);
   while (end != std::string_view::npos && end > 0 && bytes[end - 1] != '\n') {
     end = bytes.find(last, end + 1);
@@ -115,8 +115,8 @@ class PlyReader {
 
   Mesh read(const Header& header) {
     for (const Element& element : header.elements) {
-      // Each entry takes at least a byte, so a count that the file cannot hold is found before it
-      // costs.
+      // Each entry has at least one byte, so that an impossible count is detected before memory is
+      // allocated.
       if (element.count > values_.bytes_left() && !element.properties.empty()) {
         throw Error(Blame::Input, values_.where(),
                     fmt::format("the header announces {} of {}, more than the file holds",
@@ -163,7 +163,7 @@ class PlyReader {
            (property.name == "vertex_indices" || property.name == "vertex_index");
   }
 
-  // Edges, colours and whatever else.
+  // Edges, colours and other elements.
   void count_unused(const Element& element) {
     if (element.count == 0) return;
     const bool of_vertex = element.name == "vertex";
@@ -260,7 +260,8 @@ class PlyReader {
     }
   }
 
-  // -1, also as a type without sign stores it; the latter may be a vertex if there are so many.
+  // Whether an index begins a strip: -1, also as stored in an unsigned type, unless it is a valid
+  // vertex.
   [[nodiscard]] bool begins_strip(double index, PlyType type) const {
     const double minus_one = type == PlyType::Uint32   ? 0xFFFFFFFFU
                              : type == PlyType::Uint16 ? 0xFFFFU

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers after a PLY header, one after the other, in whichever of the three encodings.
+// Sequential reader of the numbers after a PLY header, in any of the three encodings.
 #pragma once
 
 #include <optional>
@@ -25,12 +25,13 @@ class PlyValues {
         encoding_(encoding),
         lines_(bytes, file_, TextLines::Style::Plain, header_lines) {}
 
-  // Throws base::Error (Input) at the file's end and, in ascii, for words that are no numbers.
+  // Throws base::Error (Input) at the end of the file and, in ascii, for words that are not
+  // numbers.
   double next(PlyType type);
 
-  // No more numbers than this can follow.
+  // Upper limit of the number of remaining values.
   [[nodiscard]] std::size_t bytes_left() const { return bytes_.size() - position_; }
-  // Whether a word follows, or in binary bytes besides zeros and blanks.
+  // Whether a word follows; in binary, whether bytes other than zeros and blanks follow.
   [[nodiscard]] bool has_more();
   // Ascii: the line of the last number; binary: 0.
   [[nodiscard]] std::uint32_t line() const;

@@ -22,8 +22,8 @@ Mesh empty_shape() {
 void add(Mesh& mesh, const Three& corners) { add_polygon(mesh, corners, 0, no_index); }
 void add(Mesh& mesh, const Four& corners) { add_polygon(mesh, corners, 0, no_index); }
 
-// Unit vector k of n round the frame's normal. Exact at the quarters, so that opposite sides of a
-// round shape mirror each other.
+// Unit vector k of n around the frame's normal. Exact at the quarters, so that opposite sides of a
+// round shape are symmetric.
 Vec3 round(const base::Frame3& frame, std::uint32_t k, std::uint32_t n) {
   const std::uint32_t quarter = 4 * k / n;
   const bool exact = 4 * k % n == 0;
@@ -35,8 +35,8 @@ Vec3 round(const base::Frame3& frame, std::uint32_t k, std::uint32_t n) {
   return frame.tangent * c + frame.bitangent * s;
 }
 
-// A fan of triangles round `center`; its rim is the ring of n vertices from `rim`. Forward: the rim
-// runs counter-clockwise seen from the front.
+// A fan of triangles around `center`, over the ring of n vertices from `rim`. forward: the ring is
+// counter-clockwise seen from the front.
 void add_fan(Mesh& mesh, const Vec3& center, std::uint32_t rim, std::uint32_t n, bool forward) {
   const auto hub = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.vertices.push_back(center);

@@ -77,7 +77,7 @@ class AsciiReader {
         unexpected("solid, facet or endsolid");
       }
     }
-    // Facets end where lines do: nothing else tells a whole file from one that is cut off.
+    // Facets end at line ends: nothing else distinguishes a complete file from a truncated one.
     if (!ended) {
       throw Error(Blame::Input, lines_.where(), "the file ends within a solid",
                   "\"endsolid\" is wanted",
@@ -134,7 +134,7 @@ class AsciiReader {
 Mesh parse_stl(std::string_view bytes, const std::filesystem::path& path) {
   Mesh mesh;
   mesh.path = path;
-  // The size tells, not the word "solid": many binary files begin with it.
+  // Decided by file size, not by the word "solid", with which many binary files begin.
   const bool binary = bytes.size() >= header_bytes &&
                       bytes.size() == header_bytes + facet_bytes * facet_count(bytes);
   if (binary) {

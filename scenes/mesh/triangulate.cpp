@@ -19,7 +19,7 @@ double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return 0.5 * glm::length(glm::cross(b - a, c - a));
 }
 
-// The outline that is left: a ring of corners from which ears are cut.
+// The remaining outline: a ring of corners from which ears are clipped.
 class EarClipper {
  public:
   EarClipper(std::span<const Point> points, std::span<const std::uint32_t> corners, double flat)
@@ -71,8 +71,8 @@ class EarClipper {
     return true;
   }
 
-  // Well-shaped triangles first. An ear beside a straight corner goes before all others: once its
-  // neighbours are gone, such a corner can only end in a triangle without area and leave a gap.
+  // Prefers well-shaped triangles. An ear beside a straight corner has priority: without its
+  // neighbours, such a corner can only end in a triangle without area and leave a gap.
   [[nodiscard]] double quality(std::size_t i) const {
     const Point& a = at(previous_[i]);
     const Point& b = at(i);
@@ -104,8 +104,8 @@ class EarClipper {
       }
       i = next_[i];
     } while (i != start);
-    // No ear: take away the corner that changes the outline least. If that was wrong, the areas
-    // will tell.
+    // No ear: remove the corner that changes the outline least. The final area check detects
+    // errors.
     return best_quality >= 0.0 ? best : straightest;
   }
 
@@ -120,7 +120,7 @@ class EarClipper {
   std::vector<char> ear_;
 };
 
-// Keeps the triangles with area and judges the sum.
+// Keeps the triangles with area and compares the sum of areas.
 void judge(std::span<const Vec3> corners, std::span<const Point> points, double smallest_area,
            Triangulation& result) {
   double seen_area = 0.0;  // along the normal, with all triangles counted positive
@@ -137,7 +137,7 @@ void judge(std::span<const Vec3> corners, std::span<const Point> points, double 
                                            : PolygonKind::Sound;
 }
 
-// Cuts a quadrilateral whose edges pass each other at a distance; a flat one stays as it is judged.
+// Divides a quadrilateral whose edges cross only in projection; a flat one keeps its result.
 void cut_twisted(std::span<const Vec3> corners, std::span<const std::uint32_t> ring,
                  Triangulation& result) {
   constexpr double flat_share = 1e-3;  // its height over its longest diagonal
@@ -189,7 +189,7 @@ void triangulate(std::span<const Vec3> corners, double smallest_area, Triangulat
   while (ring.size() > 1 && corners[ring.front()] == corners[ring.back()]) ring.pop_back();
   if (ring.size() < 3) return;
   if (!(result.area >= smallest_area) || result.area == 0.0) {
-    // No area along the normal: either nothing is there, or the outline is a figure of eight.
+    // No area along the normal: degenerate, or the outline is a figure of eight.
     double unsigned_area = 0.0;
     for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
       unsigned_area += triangle_area(corners[ring[0]], corners[ring[i]], corners[ring[i + 1]]);

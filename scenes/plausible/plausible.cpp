@@ -19,9 +19,9 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr double little_reflected = 0.005, nearly_all_through = 0.99;
-constexpr double worth_a_word = 0.01;  // of the Sun's light
-// The Moon is 384 400 km away, and no satellite of the Earth circles beyond it. The altitude of a
-// low one, 100 to 2000 km, is 100 000 or more in metres.
+constexpr double worth_a_word = 0.01;  // share of the Sun's light worth a warning
+// The Moon is 384 400 km away; no satellite of the Earth orbits beyond it. A low altitude of 100 to
+// 2000 km is 100 000 or more in metres.
 constexpr double high_km = 1e5;
 
 using Texts = std::vector<std::string>;
@@ -60,7 +60,7 @@ void name_hidden_sun(const Scene& scene, Texts& found) {
   if (!scene.sun || !(base::max_component(scene.sun->illuminance_lx) > 0.0)) return;
   const double hidden = 1.0 - visible_sun_share(scene);
   if (hidden < worth_a_word) return;
-  // A place on the orbit in full shadow, with lamps: night is meant.
+  // An orbit position in full shadow, with lamps: night is intended.
   const bool any_lamp = std::any_of(scene.lamps.begin(), scene.lamps.end(), [](const Lamp& lamp) {
     return base::max_component(lamp_flux_lm(lamp)) > 0.0;
   });
@@ -111,7 +111,7 @@ Texts implausible_input(const Scene& scene, const RayQuery& query, const SceneUs
   name_height(scene, found);
   const bool meets_sun =
       use.moves_along_orbit && scene.sun && base::max_component(scene.sun->illuminance_lx) > 0.0;
-  // Along an orbit there is a night.
+  // An orbit includes night.
   const bool may_be_night = use.moves_along_orbit || (use.shows_facts && scene.orbit);
   const std::size_t before = found.size();
   if (!may_be_night) name_hidden_sun(scene, found);

@@ -30,7 +30,7 @@ class Tracer {
   Tracer(const Scene& scene, const RayQuery& query, const std::vector<const Camera*>& cameras)
       : scene_(scene), query_(query), cameras_(cameras) {}
 
-  // `what` names the light in a message. Empty: its light is of use.
+  // `what` names the light in the message. Empty result: the light is useful.
   [[nodiscard]] std::string judge(const std::string& what, std::uint32_t rays, std::uint64_t number,
                                   const Emit& emit) const {
     const base::SobolOwen4 points(base::Key(0, base::Stream::ShutInLight, number));
@@ -76,7 +76,7 @@ class Tracer {
     return !hit.front && material_at(hit).has_black_back();
   }
 
-  // The first surface that is no glass.
+  // The first hit on a surface other than glass.
   [[nodiscard]] Hit follow(Vec3 origin, const Vec3& direction) const {
     Hit hit = query_.closest(origin, direction);
     for (int panes = 0; panes < most_panes_passed && !hit.missed(); ++panes) {
@@ -103,7 +103,7 @@ class Tracer {
     return false;
   }
 
-  // Whether any path of the light from the source, diffuse at every front, has a corner in sight.
+  // Whether any path from the source, diffuse at every front, has a vertex that a camera sees.
   [[nodiscard]] bool comes_into_sight(std::uint32_t rays, const base::SobolOwen4& points,
                                       const Emit& emit) const {
     for (std::uint32_t k = 0; k < rays; ++k) {
@@ -129,7 +129,7 @@ class Tracer {
   const std::vector<const Camera*>& cameras_;
 };
 
-// The emitting triangles of an object, chosen by their flux.
+// The emitting triangles of an object, sampled by flux.
 class EmittingObject {
  public:
   EmittingObject(const Scene& scene, const RayQuery& query, const Object& object)
@@ -152,7 +152,8 @@ class EmittingObject {
     const auto k =
         std::min(static_cast<std::size_t>(found - cumulative_.begin()), triangles_.size() - 1);
     const double below = k == 0 ? 0.0 : cumulative_[k - 1];
-    // What is left of the first number is even once more: a side of a sheet, and a place.
+    // The rest of the first random number is uniform again: it selects the side of a sheet, and a
+    // place.
     double u = std::min((wanted - below) / (cumulative_[k] - below), 1.0);
     const std::uint32_t t = triangles_[k];
     Vec3 normal = triangle_normal(scene_, t);

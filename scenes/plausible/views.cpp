@@ -13,16 +13,15 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr std::size_t grid = 24;  // rays each way
+constexpr std::size_t grid = 24;  // rays per side
 constexpr int most_panes_passed = 8;
 constexpr double near_share = 0.9;  // of the rays
-// A picture that is all of one surface, nearer than that share of the distance looked to.
+// Share of the distance to the target below which a surface that fills the picture is too near.
 constexpr double near_of_way = 0.05;
 constexpr double most_backs = 0.5;
-// A bay of 15 m whose unit is taken for mm is 15 mm; the smallest that a camera looks into has
-// decimetres.
+// A bay of 15 m read in mm measures 15 mm; the smallest space with a camera measures decimetres.
 constexpr double small_m = 0.1;
-// Fields that people choose. A number of radians in this range is below 2.7 degrees.
+// Common fields of view. In radians, a number in this range is below 2.7 degrees.
 constexpr double usual_fields_from_deg = 15.0, usual_fields_to_deg = 150.0;
 
 struct Frame {
@@ -48,8 +47,8 @@ struct Frame {
   }
 };
 
-// A closer look at what is in a narrow picture: whether any object of it is in it as a whole, as in
-// a picture by a long lens.
+// Whether a narrow picture shows any object completely, as a telephoto picture does. Uses more
+// rays.
 bool shows_a_whole_object(const Scene& scene, const View& view) {
   const Frame frame(*view.camera);
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
@@ -70,8 +69,8 @@ std::size_t most_of(const std::vector<std::size_t>& counts) {
   return static_cast<std::size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin());
 }
 
-// 1 where a face at `point`, whose back is seen, turns that to the middle of the object's box, -1
-// where away; 0 on a flat object. normal: of the front.
+// 1 if a face at `point`, whose back is visible, turns its back to the middle of the object's box,
+// -1 if away from it; 0 for a flat object. normal: of the front.
 std::ptrdiff_t turns_inward(const Box& box, const Vec3& point, const Vec3& normal) {
   constexpr double flat = 1e-6;  // of the box
   const double inward = glm::dot(box.middle() - point, -normal);
@@ -83,7 +82,7 @@ double share(std::size_t part, std::size_t all) {
   return static_cast<double>(part) / static_cast<double>(all);
 }
 
-// From here on, so many decimals, as people say lengths.
+// Lengths below 1 m in mm, others in m.
 std::string length_text(double metres) {
   if (metres < 1.0) return fmt::format("{:.2g} mm", 1000.0 * metres);
   return fmt::format("{:.3g} m", metres);
@@ -205,7 +204,7 @@ std::vector<std::string> implausible_views(const Scene& scene, const std::vector
 
 std::vector<std::string> implausible_size(const Scene& scene, const std::vector<View>& views) {
   if (scene.vertices.empty()) return {};
-  double widest = 0.0;  // of what cameras see, themselves included
+  double widest = 0.0;  // extent of the visible surfaces and the cameras
   const View* widest_view = nullptr;
   for (const View& view : views) {
     if (view.hits == 0 || view.is_blocked()) continue;

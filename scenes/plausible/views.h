@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What cameras see, by a coarse grid of rays.
+// Samples the cameras' views with a coarse grid of rays.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,18 @@
 
 namespace earthshine::scenes {
 
-// Where a ray starts that goes on from a hit: off the surface, on the side of its direction.
+// Start of a ray that continues from a hit: off the surface, on the side of its direction.
 [[nodiscard]] Vec3 leave_toward(const Scene& scene, const RayQuery& query, const Hit& hit,
                                 const Vec3& direction);
 
-// Of one camera; rays go straight on through glass, to the first surface that is none.
+// View of one camera. Rays pass straight through glass to the first other surface.
 struct View {
   const Camera* camera = nullptr;
   std::size_t rays = 0, hits = 0, backs = 0;
   std::vector<std::size_t> hits_of, backs_of;  // by object
-  // By object: of the backs, more that turn to the middle of its box than away from it.
+  // By object: number of backs toward the middle of its box minus number away from it.
   std::vector<std::ptrdiff_t> inner_backs_of;
-  double farthest_near_m = 0.0;  // within which nine in ten rays end; infinite where fewer end
+  double farthest_near_m = 0.0;  // nine of ten rays end within this; else infinite
   Box seen;                      // where they end
 
   [[nodiscard]] bool is_blocked() const;  // by a surface right before the lens
@@ -32,17 +32,17 @@ struct View {
   }
 };
 
-// Through a pinhole at the lens's centre. bounds: of the objects.
+// Pinhole view at the lens's centre. bounds: of the objects.
 [[nodiscard]] View look(const Scene& scene, const RayQuery& query, const Camera& camera,
                         const std::vector<Box>& bounds);
 
-// What is wrong with the views: backs alone, a surface right before the lens, a field of view that
-// was given in radians. At most one line for each and a camera.
+// Problems of the views: backs only, a surface directly before the lens, a field of view in
+// radians. At most one line for each problem and camera.
 [[nodiscard]] std::vector<std::string> implausible_views(const Scene& scene,
                                                          const std::vector<View>& views);
 
-// A line where all that cameras see is less than 0.1 m across: the unit was forgotten. Where no
-// camera sees anything, the surfaces and the cameras count.
+// A line if all visible surfaces together measure less than 0.1 m: the unit is missing. If no
+// camera sees anything, surfaces and cameras are measured.
 [[nodiscard]] std::vector<std::string> implausible_size(const Scene& scene,
                                                         const std::vector<View>& views);
 

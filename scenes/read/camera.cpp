@@ -16,14 +16,14 @@ constexpr std::string_view camera_keys[] = {
 struct FilterRow {
   std::string_view name;
   FilterShape shape;
-  double width_px;  // unless the scene says otherwise
+  double width_px;  // default
 };
 constexpr FilterRow filters[] = {{"box", FilterShape::Box, 1.0},
                                  {"triangle", FilterShape::Triangle, 2.0},
                                  {"gaussian", FilterShape::Gaussian, 3.0},
                                  {"blackman-harris", FilterShape::BlackmanHarris, 4.0}};
 constexpr Range filter_widths{0.0, 16.0, true};  // px
-// The view of a camera closer to its target than this is made of rounding.
+// Rounding dominates the view of a camera closer to its target than this share of its coordinates.
 constexpr double least_relative_view = 1e-9;
 constexpr std::string_view quality_keys[] = {
     "error",       "patch_edge",     "max_patches", "refine",           "form_factor_rays",
@@ -52,7 +52,7 @@ void read_resolution(Camera& camera, const TableReader& table) {
 }
 
 void read_lens(Camera& camera, const TableReader& table) {
-  // focus and aperture are metres whatever the scene's unit (docs/scene-format.md).
+  // focus and aperture are in metres in any scene unit (docs/scene-format.md).
   const auto focus = table.length("focus", 1.0, above_zero);
   const auto aperture = table.length("aperture", 1.0, at_least_zero);
   if (focus && !aperture) {
@@ -148,7 +148,7 @@ Camera read_camera(const TomlNode& node, double unit_m) {
 }
 
 SettingTable read_settings(const TomlNode& node, const std::string& title, bool named) {
-  // degrade/ knows the keys and refuses what it does not know.
+  // degrade/ knows the keys and rejects unknown ones.
   std::vector<std::string_view> keys;
   if (const auto* entries = std::get_if<TomlTable>(&node.value)) {
     if (entries->size() > most_settings) {
@@ -169,7 +169,7 @@ SettingTable read_settings(const TomlNode& node, const std::string& title, bool 
   return settings;
 }
 
-// Keys of former versions, read as the key of today with the nearest meaning.
+// Obsolete keys, read as the current key with the nearest meaning.
 void read_former_keys(Quality& quality, const TableReader& table,
                       std::vector<std::string>& warnings) {
   const auto warn = [&](const char* key, const std::string& as) {
@@ -190,7 +190,7 @@ void read_former_keys(Quality& quality, const TableReader& table,
   if (smooth) no_denoising("smooth", *smooth == 0.0);
   const auto noise = table.number("picture_noise", {0.0, 1.0, true});
   if (!noise) return;
-  // It was to be 1.5 times the wanted error.
+  // Gather noise was 1.5 times the wanted error.
   const int samples = camera_samples_for(*noise / 1.5);
   if (!quality.camera_samples) quality.camera_samples = samples;
   warn("picture_noise", fmt::format("camera_samples = {}", samples));

@@ -26,7 +26,7 @@ std::string text_in(const TomlTable& table, std::string_view key) {
   return text == nullptr ? std::string() : *text;
 }
 
-// Files that a table names, from beside the included file to beside the scene.
+// Converts relative file names of a table from the included file's folder to the scene's folder.
 void move_files(TomlNode& node, const fs::path& folder) {
   if (auto* items = std::get_if<TomlArray>(&node.value)) {
     for (TomlNode& item : *items) move_files(item, folder);
@@ -43,7 +43,7 @@ void move_files(TomlNode& node, const fs::path& folder) {
   }
 }
 
-// The entries of a list of tables before those that are there, but for names that are there too.
+// Inserts the included entries before the own ones, except for names that the scene has too.
 void put_before(TomlArray& own, TomlArray included) {
   std::erase_if(included, [&](const TomlNode& node) {
     const auto* table = std::get_if<TomlTable>(&node.value);
@@ -64,7 +64,7 @@ class Includer {
     open_.push_back(scene.lexically_normal());
   }
 
-  // `file`: of the tree, relative to the program's folder.
+  // `file`: of the tree, relative to the working directory.
   void add(TomlNode& tree, const fs::path& file) {
     auto& root = std::get<TomlTable>(tree.value);
     const TomlEntry* entry = find_entry(root, "include");
@@ -73,7 +73,7 @@ class Includer {
     std::erase_if(root, [](const TomlEntry& one) { return one.key == "include"; });
     const auto* items = std::get_if<TomlArray>(&asked.node.value);
     if (items == nullptr) refuse(asked.where, "\"include\" is " + describe(asked.node));
-    // The last one first: entries of each are put before those that are there.
+    // In reverse order: entries of each file are inserted before existing ones.
     for (auto item = items->rbegin(); item != items->rend(); ++item) {
       const auto* name = std::get_if<std::string>(&item->value);
       if (name == nullptr || name->empty()) {
@@ -104,7 +104,8 @@ class Includer {
     open_.push_back(path);
     add(tree, path);
     open_.pop_back();
-    // Files of nested ones are relative to the scene already; those are absent from own tables.
+    // File names of nested includes are already relative to the scene; those tables are not moved
+    // again.
     TomlTable table = std::get<TomlTable>(std::move(tree.value));
     for (TomlEntry& entry : table) {
       if (entry.where.file == path.string()) move_own(entry.node, path, away);
@@ -112,7 +113,7 @@ class Includer {
     return table;
   }
 
-  // Of lists some entries may come from a file that this one includes.
+  // Some list entries may come from a nested include.
   static void move_own(TomlNode& node, const fs::path& path, const fs::path& away) {
     if (auto* items = std::get_if<TomlArray>(&node.value)) {
       for (TomlNode& item : *items) {

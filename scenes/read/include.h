@@ -9,12 +9,11 @@
 
 namespace earthshine::scenes {
 
-// Takes "include" out of a scene's tree and puts the tables of these files into it: entries of
-// [[material]] and its like before the scene's own, of which one with the same name replaces them;
-// [sun] and its like where the scene has none. Their file names become relative to the scene. The
-// files may include others in turn; all are added to `files`. Throws base::Error (Input) where the
-// files are named for what is no list of them, for a file that includes itself, and for one in
-// another unit of length.
+// Replaces "include" in a scene's tree by the tables of the included files. Entries of [[material]]
+// and other lists come before the scene's own; an own entry with the same name replaces them. [sun]
+// and other tables are added if the scene has none. File names become relative to the scene.
+// Included files may include others; all are added to `files`. Throws base::Error (Input) if the
+// value is not a list of files, for a file that includes itself, and for another unit of length.
 void add_includes(TomlNode& tree, const std::filesystem::path& scene,
                   std::vector<std::filesystem::path>& files);
 

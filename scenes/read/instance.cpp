@@ -17,7 +17,7 @@ constexpr const char* title = "[[object]]";
 constexpr std::string_view instance_keys[] = {"name",  "instance_of", "translate", "rotate",
                                               "scale", "material",    "target",    "velocity"};
 
-// From where the original stands to where the instance does.
+// Transform from the original's placement to the instance's.
 Instance relation(std::uint32_t object, const Placement& from, const Placement& to) {
   Instance instance;
   instance.object = object;
@@ -28,7 +28,7 @@ Instance relation(std::uint32_t object, const Placement& from, const Placement& 
   return instance;
 }
 
-// Whether it turns and scales alike in all directions.
+// Whether it is a rotation with uniform scale.
 bool is_uniform(const glm::dmat3& linear, double scale) {
   const glm::dmat3 square = glm::transpose(linear) * linear;
   for (int k = 0; k < 3; ++k) {
@@ -47,7 +47,7 @@ bool is_same_pose(const Instance& a, const Instance& b) {
   return glm::length(a.offset_m - b.offset_m) <= rounding * (1.0 + glm::length(a.offset_m));
 }
 
-// Faces that stand twice are not looked for among instances: this is how they come about.
+// Duplicate faces are not searched among instances: an instance at its original's place makes them.
 void check_alone(const Scene& scene, const TableReader& table, const Instance& instance) {
   const auto refuse = [&table](const std::string& name) {
     table.fail("instance_of", fmt::format("puts it exactly where {} stands", in_quotes(name)),

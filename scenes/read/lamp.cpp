@@ -25,7 +25,7 @@ constexpr std::string_view distant_keys[] = {"name", "group", "type", "direction
 constexpr std::string_view ies_keys[] = {"name", "group", "type", "file",  "position",
                                          "aim",  "up",    "flux", "color", "tilt_deg"};
 
-// The lamp's strength: given as such, or as flux that spreads over `flux_per_unit` of it.
+// The lamp's strength, given directly or as flux, which is flux_per_unit times the strength.
 Rgb read_strength(const TableReader& table, std::string_view key, double flux_per_unit) {
   const auto strength = table.colour(key);
   const auto flux = table.colour("flux");
@@ -39,7 +39,7 @@ Rgb read_strength(const TableReader& table, std::string_view key, double flux_pe
   return strength ? *strength : *flux / flux_per_unit;
 }
 
-// Position and, toward the aim, the axis.
+// Position, and axis toward the aim.
 void read_aim(Lamp& lamp, const TableReader& table, double unit_m) {
   lamp.position =
       table.required(table.position("position", unit_m), "position", "position = [x, y, z]");
@@ -65,8 +65,8 @@ void read_spot(Lamp& lamp, const TableReader& table, double unit_m, LuminaireShe
     table.fail("beam_deg", fmt::format("is {}", lamp.beam_deg),
                fmt::format("allowed is at most field_deg, {}", lamp.field_deg));
   }
-  // Full intensity within the beam, then a smooth step in cos(theta) to nothing at the field's
-  // edge: the step's mean is one half, so Phi = I 2 pi (1 - (cos beam/2 + cos field/2) / 2).
+  // Full intensity within the beam, then a smoothstep in cos(theta) to 0 at the edge of the field.
+  // The mean of the step is one half, so Phi = I 2 pi (1 - (cos beam/2 + cos field/2) / 2).
   const double cos_beam = std::cos(base::radians(lamp.beam_deg / 2.0));
   const double cos_field = std::cos(base::radians(lamp.field_deg / 2.0));
   lamp.intensity_cd =
@@ -109,7 +109,7 @@ void read_disk(Lamp& lamp, const TableReader& table, double unit_m, LuminaireShe
 
 constexpr std::string_view area_keys[] = {"name", "center", "edge_u", "edge_v"};
 
-// Direction of the plane C0: that of "up" as far as it is across the axis.
+// Direction of the plane C0: projection of "up" perpendicular to the axis.
 Vec3 read_c0(const Lamp& lamp, const TableReader& table) {
   const auto across = [&](const Vec3& up) { return up - glm::dot(up, lamp.axis) * lamp.axis; };
   constexpr double nearly_parallel = 1e-6;
@@ -149,13 +149,13 @@ void read_measured(Lamp& lamp, const TableReader& table, double unit_m, Luminair
   const double tilt = luminaire.tilt ? luminaire.tilt->factor_at(tilt_deg.value_or(0.0)) : 1.0;
   lamp.intensity_cd = Rgb(tilt * lamp.photometry->peak_cd());
   if (!color) return;
-  // Only its hue: the file's candelas are luminous intensity and stay what they are.
+  // Only its hue: the candelas of the file remain the luminous intensity.
   if (!(base::luminance(*color) > 0.0)) table.fail("color", "is black", "it gives the light's hue");
   lamp.intensity_cd *= *color / base::luminance(*color);
 }
 
 void read_distant(Lamp& lamp, const TableReader& table, double, LuminaireShelf&) {
-  // As of the Sun: toward the light.
+  // Like the Sun's direction: toward the light.
   lamp.axis = -table.required(table.direction("direction"), "direction",
                               "direction = [x, y, z], toward the light");
   lamp.illuminance_lx =
@@ -174,7 +174,7 @@ constexpr std::array<LampReader, lamp_rows.size()> readers = {{{point_keys, read
                                                                {ies_keys, read_measured},
                                                                {distant_keys, read_distant}}};
 
-// Those of all types.
+// Keys of all types.
 std::vector<std::string_view> all_keys() {
   std::vector<std::string_view> keys;
   for (const LampReader& reader : readers) {
@@ -185,7 +185,7 @@ std::vector<std::string_view> all_keys() {
   return keys;
 }
 
-// Room for " (2)" and the object's name in front.
+// Leaves room for " (2)" and the object's name in front.
 constexpr std::size_t longest_own_name = 90;
 
 bool belongs(const Mesh& mesh, std::uint32_t part_set, std::uint32_t part) {

@@ -26,8 +26,7 @@ bool same_values(const Material& a, const Material& b) {
 constexpr std::string_view keys[] = {"name",     "diffuse", "specular", "shininess", "mirror",
                                      "transmit", "ior",     "emit",     "light",     "two_sided"};
 
-// The largest shininess: beyond it the lobe is narrower than the Sun's disc by far, a mirror in
-// fact.
+// Largest shininess: beyond it the lobe is much narrower than the Sun's disc, in effect a mirror.
 constexpr double largest_shininess = 1e6;
 constexpr double largest_ior = 10.0;
 
@@ -107,7 +106,7 @@ std::uint32_t MaterialChoice::add_to_scene(std::uint32_t mesh_material) {
       ++shelved_.mesh.lacking[what];
     }
   }
-  // Files of materials do not know the bound; a picture with light from nowhere helps nobody.
+  // Material files do not respect the energy bound; a picture with extra energy is useless.
   if (const double sum = conserve_energy(material); sum > 1.0) {
     scene_.warnings.push_back(fmt::format(
         "{}: the material {} would send on {:.4g} times the light that arrives; all its shares are "
@@ -115,7 +114,7 @@ std::uint32_t MaterialChoice::add_to_scene(std::uint32_t mesh_material) {
         base::to_string(shelved_.mesh.material_places[mesh_material]), in_quotes(material.name),
         sum));
   }
-  // Meshes may share a library, or use one name for different things; the scene's names stay
+  // Meshes may share a library, or use one name for different materials; names in the scene stay
   // unique.
   for (std::size_t i = own_material_count_; i < scene_.materials.size(); ++i) {
     if (scene_.materials[i].name != material.name) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of the scene's materials a face of an object wears.
+// Assigns a scene material to each face of an object.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,15 @@
 
 namespace earthshine::scenes {
 
-// The object's `material` if it has one; else the face's own material name, looked up first in the
-// scene's
-// [[material]] and then in the mesh's library, whose material is then added to the scene.
+// The object's `material` if given; else the face's material name, first in the scene's
+// [[material]] tables, then in the mesh's library, whose material is added to the scene.
 class MaterialChoice {
  public:
-  // Throws base::Error (Input) if the object's `material` is one that nobody defines.
+  // Throws base::Error (Input) if the object's `material` is undefined.
   MaterialChoice(Scene& scene, const TableReader& object, ShelvedMesh& shelved,
                  std::size_t own_material_count);
 
-  // Throws base::Error (Input) for a face without material, and for a name that nobody defines.
+  // Throws base::Error (Input) for a face without material and for an undefined name.
   [[nodiscard]] std::uint32_t material_of(const MeshPolygon& polygon);
 
  private:

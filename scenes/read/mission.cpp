@@ -20,7 +20,7 @@ constexpr std::string_view axis_words[] = {"x", "y", "z", "-x", "-y", "-z"};
 constexpr const char* dates =
     "allowed is UTC such as 2026-03-01T12:00:00 or 2026-060T12:00:00, of the years 1972 to 2199";
 
-// "-x" to a unit vector along the scene's axis.
+// Converts "-x" to a unit vector along a scene axis.
 Vec3 axis_named(std::string_view word) {
   Vec3 axis(0.0);
   const double sign = word.front() == '-' ? -1.0 : 1.0;

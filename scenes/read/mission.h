@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// [time], and an [orbit] that takes its places from a trajectory.
+// [time], and an [orbit] with a trajectory.
 #pragma once
 
 #include "scenes/text/table_reader.h"
@@ -7,16 +7,16 @@
 
 namespace earthshine::scenes {
 
-// Most moments of a [time].
+// Limit of the number of times of a [time].
 inline constexpr std::size_t most_moments = 3600;
 [[nodiscard]] TimeSpan read_time(const TomlNode& node);
-// UTC, as text or as TOML's date; nothing when the key is absent.
+// UTC, as a string or a TOML date; no value if the key is absent.
 [[nodiscard]] std::optional<Instant> read_moment(const TableReader& table, std::string_view key);
 
-// Whether an [orbit] names a trajectory.
+// Whether an [orbit] has a trajectory.
 [[nodiscard]] bool names_trajectory(const TomlNode& orbit);
-// Such an [orbit], with [time] unless it is null. Files are looked for beside scene.path, named in
-// scene.files, and warnings go to the scene.
+// Reads such an [orbit], and [time] unless it is null. Files are relative to scene.path and added
+// to scene.files; warnings go to the scene.
 [[nodiscard]] Orbit read_mission(Scene& scene, const TomlNode& orbit, const TomlNode* time);
 
 }  // namespace earthshine::scenes

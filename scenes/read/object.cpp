@@ -37,8 +37,8 @@ void allow_keys(const TableReader& table, std::initializer_list<std::string_view
 constexpr Range turns_deg{0.25, 90.0};
 constexpr Range creases_deg{0.0, 180.0, true};
 
-// By their number, or by the angle between two. faces_of: how many faces a shape of so many
-// segments has. Refused before it is made where there is not the memory for it.
+// Number of segments, given directly or by the angle between two. faces_of: faces of a shape with
+// this many segments. Checks the memory before the shape is made.
 int read_segments(const TableReader& table, std::uint64_t (*faces_of)(std::uint64_t)) {
   constexpr std::uint64_t bytes_per_face = 2 * sizeof(MeshPolygon) + 8 * sizeof(std::uint32_t) +
                                            2 * sizeof(Vec3);  // arrays grow by doubling
@@ -55,7 +55,7 @@ int read_segments(const TableReader& table, std::uint64_t (*faces_of)(std::uint6
   return segments;
 }
 
-// Of a mesh that is asked to be round.
+// Rounding options of a mesh.
 std::optional<Rounding> read_rounding(const TableReader& table) {
   const auto crease_deg = table.number("smooth_deg", creases_deg);
   const auto turn_deg = table.number("round_deg", turns_deg);
@@ -141,7 +141,7 @@ Mesh read_shape(const TableReader& table, const std::string& shape) {
 
 Orient read_orient(const TableReader& table, const Placement& placement) {
   const auto orient = table.choice("orient", orients);
-  // What is turned inward by hand is not turned back.
+  // A manually inverted object is not reoriented.
   if (!orient) return placement.inward ? Orient::AsIs : Orient::Mended;
   if (*orient == "as-is") return Orient::AsIs;
   if (*orient == "two-sided") return Orient::TwoSided;
@@ -152,9 +152,9 @@ Orient read_orient(const TableReader& table, const Placement& placement) {
   return *orient == "outward" ? Orient::Outward : Orient::Inward;
 }
 
-// From the coordinates of a mesh's file to the scene's: its unit, and y up to z up where the object
-// asks for it or the file is one of this program's, which had z up before. Names a file whose
-// format has another axis up than scenes have, where nobody says what is to be done about it.
+// Transform from a mesh file's coordinates to the scene's: its unit, and y up to z up if the object
+// requests it or this program wrote the file, whose scene had z up. Warns about a file whose format
+// has another up axis than scenes, if the object does not set `axes`.
 void take_axes(const TableReader& table, Mesh& mesh, Placement& placement) {
   const auto asked = table.choice("axes", axes_known);
   if (mesh.metres) placement.from_file *= *mesh.metres / placement.unit_m;
@@ -166,7 +166,7 @@ void take_axes(const TableReader& table, Mesh& mesh, Placement& placement) {
       fmt::format("{}: +Y is up in this format, +Z in scenes; it is read as it stands. Say axes = "
                   "\"y-up\" at the object to stand it upright, or axes = \"as-is\"",
                   mesh.path.string()));
-  mesh.is_y_up = false;  // said once
+  mesh.is_y_up = false;  // report once
 }
 
 void name_lacking(Mesh& mesh) {
@@ -181,7 +181,7 @@ void name_lacking(Mesh& mesh) {
   mesh.lacking.clear();
 }
 
-// What of the mesh's file besides faces goes into the scene, and the names of what does not.
+// Adds lamps and cameras of the mesh file to the scene, and lists contents that are not used.
 void take_extras(Scene& scene, const TableReader& table, Mesh& mesh, std::uint32_t part,
                  const Placement& placement) {
   const std::string object = scene.objects.back().name;
@@ -291,7 +291,7 @@ Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShe
       scene, std::move(object), rounding ? round : shelved->mesh, part, placement, table.where(),
       [&](const MeshPolygon& polygon) { return choice.material_of(polygon); }, fronts);
   take_extras(scene, table, shelved->mesh, part, placement);
-  // Said once, by the first object that uses the file.
+  // Reported once, by the first object that uses the file.
   auto& warnings = shelved->mesh.warnings;
   scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
   warnings.clear();

@@ -82,7 +82,7 @@ TomlTable& plain_table(TomlTable& root, std::string_view name, const base::Locat
   return *table;
 }
 
-// The entries of [[kind]] with that name; more than one is an error that the reader will find.
+// Entries of [[kind]] with this name; the scene reader reports duplicates.
 std::vector<TomlTable*> entries_named(TomlTable& root, std::string_view kind, std::string_view name,
                                       const base::Location& where) {
   std::vector<TomlTable*> found;
@@ -120,7 +120,7 @@ bool is_entry(const TomlTable& root, std::string_view kind, std::string_view nam
          });
 }
 
-// Whether any object takes over the lamps of its mesh.
+// Whether any object imports the lamps of its mesh.
 bool meshes_have_lamps(const TomlTable& root) {
   const TomlEntry* entry = find_entry(root, "object");
   const auto* items = entry == nullptr ? nullptr : std::get_if<TomlArray>(&entry->node.value);
@@ -145,8 +145,8 @@ bool turns_lamps_off(std::string_view key, const TomlNode& value) {
   return among(key, strength_keys) && is_zero(value);
 }
 
-// The strength of a [[light]] of any type, by the key that gives it. One that has it from a file of
-// candelas gets a flux, which all types know and which is no hue.
+// Sets the key that gives the strength of a [[light]] of any type. A measured light gets a flux,
+// which all types accept; its colour is only a hue.
 void set_dark(TomlTable& light, const base::Location& where) {
   const TomlNode none{where, std::int64_t{0}};
   for (const std::string_view key : strength_keys) {

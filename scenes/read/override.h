@@ -16,17 +16,17 @@ struct LampOff {
   base::Location where;
 };
 
-// "name=...", "quality.error=0.1" (a plain table, made if absent), "light.fwd.intensity=0" (the key
-// after the last dot, of the entry of that name). The value is TOML; a word that is not is taken as
-// a string. What is set carries the place "--set key=value", or asked_at where it
-// stands in a file. An intensity, flux or exitance of 0 turns off a light of any type, however its
-// strength is given; a light that is not in the scene file but in a mesh goes to `off`. Throws
-// base::Error (Input) there if it cannot be applied.
+// Keys: "name=...", "quality.error=0.1" (a plain table, created if absent), "light.fwd.intensity=0"
+// (the key after the last dot, in the entry with this name). The value is TOML; an unquoted word is
+// a string. The place of the new value is "--set key=value", or asked_at if the setting is in a
+// file. An intensity, flux or exitance of 0 switches off a light of any type, however its strength
+// is given; a light that is in a mesh, not in the scene file, is added to `off`. Throws base::Error
+// (Input) if the setting cannot be applied.
 void apply_override(TomlNode& root, const std::string& setting,
                     const std::optional<base::Location>& asked_at, std::vector<LampOff>& off);
 
-// Turns off lamps by their names, when all are in the scene. Throws base::Error (Input) as
-// apply_override does for names that no lamp has.
+// Switches off lamps by name, when the scene is complete. Throws base::Error (Input) as
+// apply_override does for unknown names.
 void turn_off(Scene& scene, const std::vector<LampOff>& off);
 
 }  // namespace earthshine::scenes

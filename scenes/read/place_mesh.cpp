@@ -21,10 +21,10 @@ namespace {
 using base::Blame;
 using base::Error;
 
-// Of the box's diagonal squared: smaller polygons are rounding, not surfaces.
+// Share of the box's squared diagonal: smaller polygons are rounding errors.
 constexpr double smallest_area_share = 1e-12;
-// The triangles of a polygon that is not flat have more area than the polygon has along its normal;
-// the file does not say which triangles it means. Less than this share is rounding.
+// The triangles of a non-planar polygon have more area than its projection, and the file does not
+// define the triangulation. A smaller share of excess area is rounding.
 constexpr double warp_worth_a_warning = 1e-4;
 
 class Placer {
@@ -142,7 +142,7 @@ class Placer {
   }
 
  private:
-  // An array that must grow is copied to a larger one; both stand for a while.
+  // A growing array is copied to a larger one; both exist for a while.
   template <class Item>
   void make_room(const std::vector<Item>& items, std::size_t more) const {
     const std::size_t wanted = items.size() + more;
@@ -155,7 +155,7 @@ class Placer {
     return std::span(mesh_.indices).subspan(polygon.first, polygon.count);
   }
 
-  // The polygon's line if the file has lines, else the file and its running number, else the
+  // The polygon's line if the file has lines, else the file and the polygon's index, else the
   // scene's key.
   [[nodiscard]] base::Location place_of(std::size_t p) const {
     if (mesh_.path.empty()) return where_;
@@ -177,9 +177,9 @@ class Placer {
     }
   }
 
-  // corners: of the polygon, placed.
+  // corners: of the polygon, in the scene.
   void note_front(const MeshPolygon& polygon, const std::vector<Vec3>& corners) {
-    constexpr double least_cosine = 0.05;  // of a normal to the polygon's own
+    constexpr double least_cosine = 0.05;  // of a normal to the polygon's normal
     if (mesh_.normal_indices.empty() || object_.orient != Orient::Mended) return;
     const auto indices = corners_of(polygon);
     const auto corner = [&](std::size_t k) { return mesh_.vertices[indices[k]]; };
@@ -214,7 +214,7 @@ class Placer {
     return placed_at_[corner];
   }
 
-  // A vertex for each pair of a place and texture coordinates.
+  // One vertex per pair of position and texture coordinates.
   std::uint32_t textured_vertex(std::uint32_t corner, std::uint32_t index) {
     const std::uint32_t uv = index < mesh_.uv_indices.size() ? mesh_.uv_indices[index] : no_index;
     if (uv == no_index) ++without_uv_;
@@ -251,8 +251,8 @@ class Placer {
       Triangle triangle{{0, 0, 0}, number, material, next_polygon_};
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t corner = indices[piece[k]];
-        // Turned about the first corner, so that a parallelogram stays (0,1,2), (0,2,3) of its
-        // corners read the other way round.
+        // Reversed about the first corner, so that a parallelogram stays (0,1,2), (0,2,3) of its
+        // corners in reverse order.
         triangle.vertex[placement_.inward ? (3 - k) % 3 : k] =
             textured ? textured_vertex(corner, polygon.first + piece[k]) : plain_vertex(corner);
       }
@@ -275,9 +275,9 @@ class Placer {
   FileFronts& fronts_;
   std::vector<std::size_t> chosen_;
   std::vector<std::uint32_t> placed_at_;                          // scene vertex per mesh vertex
-  std::unordered_map<std::uint64_t, std::uint32_t> textured_at_;  // the same by (vertex, uv)
+  std::unordered_map<std::uint64_t, std::uint32_t> textured_at_;  // by (vertex, uv)
   std::size_t without_uv_ = 0;                                    // textured corners
-  std::size_t first_without_uv_ = 0;                              // the polygon of the first
+  std::size_t first_without_uv_ = 0;                              // polygon of the first one
   double smallest_area_ = 0.0;
   std::uint32_t next_polygon_ = 0;
   std::size_t first_degenerate_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh into the scene: transformed, triangulated, with its materials and its place in the counts.
+// Adds a mesh to the scene: transforms and triangulates it, and assigns materials.
 #pragma once
 
 #include <functional>
@@ -18,30 +18,30 @@ struct Placement {
   Vec3 scale{1.0};
   glm::dmat3 rotation{1.0};
   Vec3 translate{0.0};  // in the file's unit
-  bool inward = false;  // fronts become backs
+  bool inward = false;  // swaps fronts and backs
 
   [[nodiscard]] Vec3 apply(const Vec3& v) const {
     return unit_m * (rotation * (scale * (from_file * v)) + translate);
   }
-  // Of a direction of the file, unit.
+  // Rotates a direction of the file; unit length.
   [[nodiscard]] Vec3 turned(const Vec3& along) const {
     return glm::normalize(rotation * (scale * (from_file * along)));
   }
 };
 
-// Degrees about x, then y, then z.
+// Rotations in degrees about x, then y, then z.
 [[nodiscard]] glm::dmat3 rotation_xyz(const Vec3& degrees);
 
-// More triangles than this in one scene are refused: some 20 GB in the stages that follow.
+// Limit of triangles in one scene: the later stages would need some 20 GB.
 inline constexpr std::size_t max_scene_triangles = std::size_t{1} << 27;
 
 // Appends the polygons of `mesh` that belong to `part` (no_index: all) as the object's triangles
-// and fills its counts. material_of gives the scene's material of a mesh material (or of no_index,
-// for a polygon at mesh.path:line that has none). Polygons without area are left out and counted,
-// with a warning in the scene. Where the mesh has normals, `fronts` gets their sides, unless the
-// object says its own. Throws base::Error (Input), at the polygon's line where known, for
-// outlines that cross themselves, polygons of more than 1024 corners or far from flat, and vertices
-// out of range; at `where` for an object without area.
+// and fills its counts. material_of returns the scene's material for a mesh material (or for
+// no_index, for a polygon at mesh.path:line without material). Polygons without area are omitted
+// and counted, with a warning. If the mesh has normals and the object sets no orientation, `fronts`
+// gets their sides. Throws base::Error (Input), at the polygon's line if known, for outlines that
+// cross themselves, polygons with more than 1024 corners or far from planar, and vertices out of
+// range; at `where` for an object without area.
 void place_mesh(Scene& scene, Object object, const Mesh& mesh, std::uint32_t part,
                 const Placement& placement, const base::Location& where,
                 const std::function<std::uint32_t(const MeshPolygon&)>& material_of,

@@ -26,7 +26,7 @@ constexpr std::string_view units[] = {"m", "cm", "mm", "ft", "in"};
 constexpr double metres_per_unit[] = {1.0, 0.01, 0.001, 0.3048, 0.0254};
 static_assert(std::size(units) == std::size(metres_per_unit));
 
-// A study's file knows other keys.
+// A study file has other keys.
 void refuse_study(const TomlNode& tree) {
   for (const char* key : {"scene", "scenes"}) {
     const TomlEntry* const entry = find_entry(std::get<TomlTable>(tree.value), key);
@@ -51,7 +51,7 @@ const TomlNode* plain_table(const TableReader& root, std::string_view key) {
   return entry == nullptr ? nullptr : &entry->node;
 }
 
-// Reads the entries of [[key]] in their order and checks that no two have one name.
+// Reads the entries of [[key]] in order and checks that names are unique.
 template <class Read>
 void read_named(const TableReader& root, std::string_view key, Read read) {
   const auto entries = named_entries(root, key);
@@ -70,7 +70,7 @@ void read_cctv(Scene& scene, const TableReader& root) {
   }
 }
 
-// A bay of ten kilometres is one whose unit was forgotten; small ones are judged by what cameras see
+// A bay of ten kilometres lacks its unit. Small scenes are checked by the cameras' views
 // (scenes/plausible).
 void check_size(Scene& scene) {
   constexpr double large_m = 300.0;
@@ -159,7 +159,7 @@ Scene scene_of(TomlNode tree, const std::filesystem::path& path,
   if (const TomlNode* node = plain_table(root, "quality"))
     scene.quality = read_quality(*node, scene.warnings);
 
-  // Objects last: their meshes take the longest to read, and a slip elsewhere shows at once.
+  // Objects last: meshes take longest to read, so that other errors appear at once.
   MeshShelf shelf(path.parent_path(), scene.materials.size());
   InstanceReader instances;
   FileFronts fronts;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of a scene file, one function per table. All throw base::Error (Input) for what is
-// wrong.
+// The parts of a scene file, one function per table. All throw base::Error (Input) for invalid
+// input.
 #pragma once
 
 #include <filesystem>
@@ -18,12 +18,12 @@
 
 namespace earthshine::scenes {
 
-// root: of a file of the kind that its label says, "the scene".
+// root: of a file whose kind its label names, "the scene".
 void check_format(const TableReader& root);
 
 [[nodiscard]] Material read_material(const TomlNode& node);
 
-// Measured luminaires are read once however many lamps are of their kind.
+// Reads each measured luminaire once for all its lamps.
 class LuminaireShelf {
  public:
   explicit LuminaireShelf(std::filesystem::path scene_folder)
@@ -54,11 +54,11 @@ class LuminaireShelf {
 
 inline constexpr Range altitudes_km{0.0, 1e6, true};
 
-// [orbit]; a table of attitudes is looked for beside scene.path, warnings go to the scene.
+// [orbit]; a table of attitudes is relative to scene.path, warnings go to the scene.
 [[nodiscard]] Orbit read_orbit(Scene& scene, const TomlNode& node);
 
-// [sun], [earth], [orbit] and [time], each null when absent, to scene.sun, scene.earth and
-// scene.orbit.
+// Sets scene.sun, scene.earth and scene.orbit from [sun], [earth], [orbit] and [time], each null if
+// absent.
 struct SkyTables {
   const TomlNode *sun, *earth, *orbit, *time;
 };
@@ -69,16 +69,16 @@ void read_sky(Scene& scene, const SkyTables& tables);
                                          bool named);
 [[nodiscard]] Quality read_quality(const TomlNode& node, std::vector<std::string>& warnings);
 
-// A mesh and what the scene has made of its materials.
+// A mesh and the scene's materials made from it.
 struct ShelvedMesh {
   Mesh mesh;
-  std::vector<std::uint32_t> scene_material;  // per mesh.materials; no_index: not used so far
+  std::vector<std::uint32_t> scene_material;  // per mesh.materials; no_index: not yet used
 };
 
-// Meshes are read once however many objects take parts of them.
+// Reads each mesh once for all its objects.
 class MeshShelf {
  public:
-  // own_material_count: the scene file's materials; those of meshes come after them in the scene.
+  // own_material_count: number of the scene file's materials; materials of meshes follow them.
   MeshShelf(std::filesystem::path scene_folder, std::size_t own_material_count)
       : scene_folder_(std::move(scene_folder)), own_material_count_(own_material_count) {}
 
@@ -98,26 +98,26 @@ class MeshShelf {
 // velocity of an object, m/s.
 [[nodiscard]] Vec3 read_velocity(const TableReader& table);
 
-// Adds the object's triangles, and the materials that only its mesh defines, to the scene, and to
-// `fronts` the sides that the mesh's normals say are fronts. Says how it is placed.
+// Adds the object's triangles, and materials that only its mesh defines, to the scene, and the
+// sides of the mesh's normals to `fronts`. Returns the placement.
 Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& shelf,
                       FileFronts& fronts);
 
-// Lamps and cameras that stand in a mesh file, as a scene's own: appends those of the part
-// (no_index: all), placed as the object's faces are; strengths do not
-// change with scale. Their names are "OBJECT.NAME" and new to the scene; each lamp is a light group
-// of its own. Throws base::Error (Input) at `where` for coordinates that are too large.
+// Adds lamps and cameras of a mesh file to the scene: those of the part (no_index: all), placed
+// like the object's faces; strengths do not change with scale. Their names are "OBJECT.NAME" and
+// unique; each lamp is a separate light group. Throws base::Error (Input) at `where` for
+// coordinates that are too large.
 void add_file_lamps(Scene& scene, const std::string& object, const Mesh& mesh, std::uint32_t part,
                     const Placement& placement, const base::Location& where);
 void add_file_cameras(Scene& scene, const std::string& object, const Mesh& mesh, std::uint32_t part,
                       const Placement& placement, const base::Location& where);
 
-// [[object]] tables with instance_of: read when all others are in the scene, and mended.
+// [[object]] tables with instance_of: read when all other objects are in the scene and repaired.
 class InstanceReader {
  public:
-  // The table's name, if it is one; it is read in finish(), until when `node` must live.
+  // The table's name if it is an instance, which finish() reads; `node` must live until then.
   [[nodiscard]] std::optional<std::string> take(const TomlNode& node);
-  // An object that is no instance.
+  // Registers an object that is not an instance.
   void know(const std::string& name, const Placement& placement) { placed_[name] = placement; }
   void finish(Scene& scene, double unit_m, std::size_t own_material_count) const;
 

@@ -24,7 +24,7 @@ constexpr std::string_view albedo_laws[] = {"mean", "latitude"};
 constexpr std::string_view latitude_keys[] = {"albedo_a0", "albedo_a1", "albedo_a2", "north"};
 constexpr std::string_view example_direction = "direction = [x, y, z]";
 
-// What [orbit] determines may not be given a second time.
+// Rejects keys that [orbit] determines.
 void refuse_beside_orbit(const TableReader& table, std::string_view key) {
   if (!table.has(key)) return;
   table.fail(key, "stands beside [orbit]", "[orbit] already determines it",
@@ -48,7 +48,7 @@ void read_disc(Earth& earth, const TableReader& table, bool by_orbit) {
   if (by_orbit) {
     refuse_beside_orbit(table, "altitude_km");
     refuse_beside_orbit(table, "half_angle_deg");
-    return;  // moving along the orbit sets it
+    return;  // set by the movement along the orbit
   } else if (earth.model == EarthModel::Uniform && table.has("half_angle_deg")) {
     if (table.has("altitude_km")) {
       table.fail("half_angle_deg", "stands beside \"altitude_km\"",
@@ -68,7 +68,7 @@ void read_disc(Earth& earth, const TableReader& table, bool by_orbit) {
   earth.half_angle_deg = base::degrees(earth_half_angle_rad(earth.altitude_m));
 }
 
-// The share of the light that a Lambert Earth gives back.
+// Albedo of a Lambertian Earth.
 void read_albedo(Earth& earth, const TableReader& table, bool by_orbit) {
   if (table.choice("albedo_by", albedo_laws).value_or("mean") == "mean") {
     for (const std::string_view key : latitude_keys) {
@@ -156,7 +156,7 @@ void read_attitude(Scene& scene, Orbit& orbit, const TableReader& table) {
   orbit.inertial_at_deg = table.number("inertial_at_deg", one_turn).value_or(0.0);
 }
 
-// The Sun's declination follows from the orbit's plane: sin = cos beta sin i sin u + sin beta cos
+// The Sun's declination follows from the orbital plane: sin = cos beta sin i sin u + sin beta cos
 // i, u the argument of latitude at orbit noon.
 void check_declination(Scene& scene, const Orbit& orbit) {
   const double beta = base::radians(orbit.beta_deg), i = base::radians(orbit.inclination_deg);
@@ -185,7 +185,7 @@ void read_sky(Scene& scene, const SkyTables& tables) {
   } else if (by_orbit) {
     scene.orbit = read_orbit(scene, *orbit);
   }
-  // With [orbit], Sun and Earth are there, and an absent table stands for its defaults.
+  // With [orbit], Sun and Earth exist; an absent table has default values.
   const TomlNode nothing{by_orbit ? orbit->where : base::Location{}, TomlTable{}};
   if (by_orbit && sun == nullptr) sun = &nothing;
   if (by_orbit && earth == nullptr) earth = &nothing;

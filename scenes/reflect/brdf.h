@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a surface point reflects, and directions drawn in proportion to it.
+// Reflectance at a surface point, and importance sampling of directions.
 #pragma once
 
 #include "base/units.h"
@@ -11,17 +11,17 @@ namespace earthshine::scenes {
 // lobe's axis.
 // Density cos / pi.
 [[nodiscard]] Vec3 cosine_sample(double u, double v);
-// Density (n + 1) cos^n / (2 pi), on the axis for u = 0.
+// Density (n + 1) cos^n / (2 pi); u = 0 gives the axis.
 [[nodiscard]] Vec3 lobe_sample(double n, double u, double v);
 // cosine_sample() about frame.normal.
 [[nodiscard]] inline Vec3 cosine_direction(const base::Frame3& frame, double u, double v) {
   return frame.to_world(cosine_sample(u, v));
 }
 
-// The BRDF at a point as the viewer sees it, Lambert's and Phong's (docs/theory.md):
+// The BRDF at a point for one view, Lambert's and Phong's (docs/theory.md):
 //   f = (k_d + k_s cos^n alpha) / pi   in 1/sr, alpha between the light and the mirrored view;
-// the second term over the larger of both cosines to the normal where the material has an even lobe
-// (Material::even_lobe). The material must outlive it.
+// If the material has an even lobe (Material::even_lobe), the second term is divided by the larger
+// cosine to the normal. The material must outlive it.
 struct Brdf {
   enum class Term { Diffuse, Specular };
   // f cos_in / pdf = k weight, with k = k_d or k_s; 0 below the surface.
@@ -36,16 +36,16 @@ struct Brdf {
   Vec3 mirrored;    // unit: the view mirrored about the normal, the lobe's axis
   double cos_view;  // of the view to the normal
 
-  // pi f for light from the unit vector `in`, whose cosine to the normal is cos_in > 0: all of it,
-  // and its specular term alone.
+  // pi f for light from the unit vector `in` with cosine cos_in > 0 to the normal: the total, and
+  // the specular term alone.
   [[nodiscard]] Rgb eval(const Vec3& in, double cos_in) const {
     return diffuse + eval_specular(in, cos_in);
   }
   [[nodiscard]] Rgb eval_specular(const Vec3& in, double cos_in) const;
-  // By the density of the term alone.
+  // Samples one term with its own density.
   [[nodiscard]] Sample sample(Term term, double u, double v) const;
   [[nodiscard]] double pdf_per_sr(Term term, const Vec3& in) const;
-  // Share of the light along the normal that a term reflects, at most: k_d, 2 k_s / (n + 2).
+  // Largest directional albedo of a term, for light along the normal: k_d, 2 k_s / (n + 2).
   [[nodiscard]] Rgb albedo(Term term) const;
 };
 

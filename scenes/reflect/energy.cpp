@@ -54,7 +54,7 @@ void check_energy(const Material& material, const base::Location& where, const s
 
 namespace {
 
-// Over the turn, the cosine a + b cos t over the larger of it and cos_in: the midpoint rule.
+// Mean over the azimuth of (a + b cos t) / max(a + b cos t, cos_in), by the midpoint rule.
 double mean_even_weight(double a, double b, double cos_in) {
   constexpr int steps = 48;
   double sum = 0.0;
@@ -67,10 +67,10 @@ double mean_even_weight(double a, double b, double cos_in) {
 
 }  // namespace
 
-// Directions out have the density (n + 1) cos^n / (2 pi) about the mirrored direction, those in
-// cos / pi about the normal, in both as equal shares of probability: the midpoint rule. Over the
-// turn about the mirrored direction the cosine to the normal is a + b cos t, of which what is above
-// the surface counts: t up to acos(-a / b).
+// Outgoing directions have the density (n + 1) cos^n / (2 pi) about the mirrored direction,
+// incoming ones cos / pi about the normal. Midpoint rule in equal shares of probability of both. At
+// azimuth t about the mirrored direction the cosine to the normal is a + b cos t; only directions
+// above the surface count: t up to acos(-a / b).
 double mean_lobe_reflectance(double n, bool even) {
   constexpr std::size_t steps = 48;
   const auto share = [](std::size_t k) { return (static_cast<double>(k) + 0.5) / steps; };

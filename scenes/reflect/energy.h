@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a material may reflect and let through at most.
+// Energy bounds of a material.
 #pragma once
 
 #include <string>
@@ -10,30 +10,29 @@
 
 namespace earthshine::scenes {
 
-// Energy: diffuse + 2 specular / (n + 2) + mirror + transmit <= 1 in every channel, else an Error
-// at `where` that gives the numbers. `what` names the material in the message.
+// Requires diffuse + 2 specular / (n + 2) + mirror + transmit <= 1 in every channel. Otherwise
+// throws an Error at `where` with the numbers. `what` names the material in the message.
 void check_energy(const Material& material, const base::Location& where, const std::string& what);
 
-// Of light along the normal, the share that the lobe reflects: 2 k_s / (n + 2).
+// Directional albedo of the lobe for light along the normal: 2 k_s / (n + 2).
 [[nodiscard]] Rgb lobe_albedo(const Material& material);
 
-// What it sends on of the light that arrives: the sum above.
+// Share of the incident light that leaves again: the sum above.
 [[nodiscard]] Rgb reflected_share(const Material& material);
 
-// Divides all shares of a material that breaks the bound by its largest sum, so that it loses
-// nothing and keeps its hue. Returns that sum; 1 where there was nothing to do.
+// Divides all shares of a material that breaks the bound by its largest sum, which preserves its
+// hue. Returns the divisor, 1 if the bound holds.
 double conserve_energy(Material& material);
 
-// What a surface reflects in all, for radiosity, which knows no directions.
+// Total reflectance of a surface, for the radiosity, which is independent of direction.
 
-// Of light that comes evenly from all over the hemisphere, the share that a Phong lobe of k_s = 1
-// reflects (docs/theory.md, "Lobes in the radiosity"):
+// Bihemispherical albedo of a Phong lobe with k_s = 1 (docs/theory.md, "Lobes in the radiosity"):
 //   (1/pi) integral over both directions of cos^n(alpha) cos(in) cos(out) / pi,
-// 5/6 for n = 0 and 4 / (3 (n + 2)) for large n; within 1e-3 of it, relative. n >= 0. Of an even
-// lobe (Material::even_lobe) with the larger cosine below the fraction: 2 / (n + 2) for large n.
+// 5/6 for n = 0 and 4 / (3 (n + 2)) for large n; relative error 1e-3. n >= 0. For an even lobe
+// (Material::even_lobe) the integrand is divided by the larger cosine: 2 / (n + 2) for large n.
 [[nodiscard]] double mean_lobe_reflectance(double n, bool even = false);
 
-// Per material: k_d and the mean of its lobe.
+// Per material: k_d plus the albedo of its lobe.
 [[nodiscard]] std::vector<Rgb> bihemispherical_albedos(const Scene& scene);
 
 }  // namespace earthshine::scenes

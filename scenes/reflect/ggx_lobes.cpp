@@ -13,7 +13,7 @@ namespace {
 struct Row {
   double roughness, diffuse, peak, shininess;
 };
-// By tests/validation/metal_lobes.py.
+// Computed by tests/validation/metal_lobes.py.
 constexpr Row rows[] = {{0.05, 4.99979e-05, 40000, 80002},
                         {0.075, 0.000253071, 7901.23, 15804.5},
                         {0.1, 0.00079946, 2500, 5002},
@@ -37,7 +37,7 @@ constexpr Row rows[] = {{0.05, 4.99979e-05, 40000, 80002},
                         {1.0, 0.376159, 0, 4}};
 
 double between(double a, double b, double share) { return (1.0 - share) * a + share * b; }
-// Along a power of the roughness, as lobes go; linearly to nothing.
+// Interpolates along a power of the roughness, as lobes vary; linearly to 0.
 double between_powers(double a, double b, double share) {
   return a > 0.0 && b > 0.0 ? std::exp(between(std::log(a), std::log(b), share))
                             : between(a, b, share);

@@ -23,8 +23,8 @@ using base::Blame;
 using base::Error;
 using Points = std::span<const ReflectancePoint>;
 
-// Points whose highlight is below this share of k_s say nothing about n: rounding and noise decide
-// there.
+// Points whose highlight is below this share of k_s do not determine n: rounding and noise
+// dominate.
 constexpr double least_lobe_share = 0.01;
 constexpr double diffuse_angle_deg = 80.0;
 
@@ -46,10 +46,10 @@ Curve curve_of(Points points) {
   return curve;
 }
 
-// A value read off the curve: the share of each angle's reading in it.
+// An interpolated value: its weights of each angle's mean reflectance.
 using Shares = std::map<double, double>;
 
-// Empty beyond the data.
+// Empty outside the range of the data.
 Shares interpolate(const Curve& curve, double angle_deg) {
   const auto above = curve.lower_bound(angle_deg);
   if (above == curve.end()) return {};
@@ -60,7 +60,7 @@ Shares interpolate(const Curve& curve, double angle_deg) {
   return {{below->first, 1.0 - t}, {above->first, t}};
 }
 
-// At +angle and -angle, their mean where both are measured.
+// At +angle and -angle; the mean if both are measured.
 Shares interpolate_both_sides(const Curve& curve, double angle_deg) {
   Shares right = interpolate(curve, angle_deg), left = interpolate(curve, -angle_deg);
   if (left.empty()) return right;
@@ -78,7 +78,7 @@ double value_of(const Shares& shares, const Curve& curve) {
   return sum;
 }
 
-// What one point's reflectance does to a value read off the curve.
+// Derivative of an interpolated value by one point's reflectance.
 double slope_of(const Shares& shares, const Curve& curve, double angle_deg) {
   const auto share = shares.find(angle_deg);
   return share == shares.end() ? 0.0 : share->second / curve.at(angle_deg).count;
@@ -86,7 +86,7 @@ double slope_of(const Shares& shares, const Curve& curve, double angle_deg) {
 
 struct ReportFit {
   PhongFit fit;
-  std::vector<std::array<double, 3>> slopes;  // of k_d, k_s, n by each point's reflectance
+  std::vector<std::array<double, 3>> slopes;  // derivatives of k_d, k_s, n by each point's value
 };
 
 bool shows_lobe(const PhongFit& fit, const ReflectancePoint& p) {
@@ -133,7 +133,7 @@ ReportFit report_fit(Points points, const std::string& source) {
   return result;
 }
 
-// The noise of the points carried to k_d, k_s and n.
+// Propagates the noise of the points to k_d, k_s and n.
 PhongErrors carried_errors(const ReportFit& report, const LeastSquaresFit& noise) {
   std::array<double, 3> variance{};
   for (std::size_t i = 0; i < report.slopes.size(); ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Phong's k_d, k_s and n from measured reflectance: R(a) = k_d + k_s cos^n(a), a the off-specular
-// angle, with standard errors.
+// Fits Phong's k_d, k_s and n to measured reflectance: R(a) = k_d + k_s cos^n(a), a the
+// off-specular angle, with standard errors.
 #pragma once
 
 #include <cstddef>
@@ -12,26 +12,26 @@
 
 namespace earthshine::scenes {
 
-// Measured reflectance: a CSV file to points.
+// Measured reflectance from a CSV file.
 
 struct ReflectancePoint {
   double angle_deg = 0.0;    // from the mirror direction, -180 to 180
   double reflectance = 0.0;  // reflectance factor pi f
 };
 
-// Rows "angle in degrees, reflectance" with an optional heading row; # starts a comment.
-// Throws base::Error (Input) with file, line and column.
+// Rows "angle in degrees, reflectance" with an optional header row; # starts a comment. Throws
+// base::Error (Input) with file, line and column.
 [[nodiscard]] std::vector<ReflectancePoint> read_reflectance(const std::filesystem::path& path);
 
-// How far a measured point lies from the true R, as a standard deviation.
+// Model of the standard deviation of a measured point.
 enum class ReflectanceNoise {
-  Proportional,  // a share of R: calibration, lamp and detector drift; 1 % of the peak is added in
-                 // quadrature, so that points next to zero do not rule the fit
-  Constant       // the same everywhere: a detector's dark noise
+  Proportional,  // proportional to R: calibration, lamp and detector drift; 1 % of the peak is
+                 // added in quadrature, so that points near zero do not dominate the fit
+  Constant       // equal everywhere: a detector's dark noise
 };
 
-// Standard deviations of what was found, by first-order propagation of the noise; nothing where the
-// data do not determine the quantity.
+// Standard errors by first-order propagation of the noise; no value if the data do not determine
+// the quantity.
 struct PhongErrors {
   std::optional<double> diffuse, specular, shininess;
 };
@@ -39,37 +39,37 @@ struct PhongErrors {
 struct PhongFit {
   double diffuse = 0.0;         // k_d
   double specular = 0.0;        // k_s
-  double shininess = 1.0;       // n; 1 where there is no lobe
-  double residual = 0.0;        // root mean square over all points, not weighted
-  std::size_t points_used = 0;  // for n
+  double shininess = 1.0;       // n; 1 without a lobe
+  double residual = 0.0;        // unweighted RMS over all points
+  std::size_t points_used = 0;  // to determine n
   PhongErrors std_error{};
 };
 
-// k_d + 2 k_s / (n + 2): a scene refuses materials for which it exceeds 1.
+// k_d + 2 k_s / (n + 2): scenes reject materials for which it exceeds 1.
 [[nodiscard]] double reflected_share(const PhongFit& fit);
 
 struct PhongFits {
   PhongFit report;         // the 1990 report's three steps
   PhongFit least_squares;  // over k_d, k_s >= 0 and 0.5 <= n <= 20000, weighted by the noise
-  // Standard deviation of the noise: a share of R (Proportional) or a reflectance factor
-  // (Constant), from the weighted residuals of least_squares over N - 3. Nothing for N = 3.
+  // Standard deviation of the noise, as a share of R (Proportional) or a reflectance factor
+  // (Constant), from the weighted residuals of least_squares over N - 3. No value for N = 3.
   std::optional<double> noise;
-  std::vector<std::string> notes;  // what the data do not say
+  std::vector<std::string> notes;  // quantities that the data do not determine
 };
 
-// The report's method: k_d = R(80 deg), k_s = R(0) - k_d, both interpolated linearly, and n the
-// mean over the points between of ln((R - k_d) / k_s) / ln(cos a). Points on both sides of the
-// mirror direction count alike. Its standard errors are those of its inputs carried through the
-// three steps; they do not hold what the method gets wrong of a broad lobe, k_s cos^n(80 deg).
+// Method of the report: k_d = R(80 deg), k_s = R(0) - k_d, both interpolated linearly; n is the
+// mean of ln((R - k_d) / k_s) / ln(cos a) over the points between. Points on both sides of the
+// mirror direction have equal weight. Its standard errors propagate the noise through the three
+// steps. They exclude the method's bias for a broad lobe, k_s cos^n(80 deg).
 //
-// Least squares: sum of ((R - model) / h)^2, h the shape of the noise at the fitted model, weights
-// and fit in turn until they agree (the estimating equations of a quasi-likelihood: no bias from
-// the weights). Covariance s^2 (J^T W J)^-1, s the noise, J by k_d, k_s and n. A lobe counts as
-// found when leaving it out would raise the sum of squares by more than chance does: p = (S_lobe /
-// S_flat)^((N - 3)/2), the F test with 2 and N - 3 degrees of freedom, below 0.001.
+// Least squares: minimises the sum of ((R - model) / h)^2, h the shape of the noise at the fitted
+// model. Weights and fit alternate until they agree (the estimating equations of a
+// quasi-likelihood: the weights cause no bias). Covariance s^2 (J^T W J)^-1, s the noise, J the
+// derivatives by k_d, k_s and n. A lobe is significant if p = (S_lobe / S_flat)^((N - 3)/2) <
+// 0.001: the F test with 2 and N - 3 degrees of freedom.
 //
-// Throws base::Error (Input), naming `source`, for fewer than 3 different angles or data that do
-// not reach from 0 to 80 degrees.
+// Throws base::Error (Input), with the name `source`, for fewer than 3 different angles or data
+// that do not cover 0 to 80 degrees.
 [[nodiscard]] PhongFits fit_phong(std::span<const ReflectancePoint> points,
                                   const std::string& source,
                                   ReflectanceNoise noise = ReflectanceNoise::Proportional);

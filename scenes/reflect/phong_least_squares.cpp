@@ -17,7 +17,7 @@ constexpr double chance_of_lobe = 1e-3;
 constexpr double rounding_of_squares = 1e-20;  // of a sum of squares
 constexpr int unknowns = 3;
 
-// The noise of each point to a common factor.
+// Relative noise of each point.
 using Shape = std::vector<double>;
 
 struct Data {
@@ -26,7 +26,7 @@ struct Data {
   Shape shape;
 };
 
-// cos^n, 0 where there is no lobe.
+// cos^n, 0 outside the lobe.
 std::vector<double> lobe(const Data& data, double shininess) {
   std::vector<double> basis(data.points.size());
   for (std::size_t i = 0; i < basis.size(); ++i) {
@@ -61,7 +61,7 @@ struct Candidate {
   double squares = 0.0;
 };
 
-// For a given n the model is linear in k_d and k_s: the best of both, neither negative.
+// For a given n the model is linear in k_d and k_s: best fit with both non-negative.
 Candidate best_for(double shininess, const Data& data) {
   const std::vector<double> basis = lobe(data, shininess);
   double n = 0.0, s = 0.0, ss = 0.0, r = 0.0, sr = 0.0;
@@ -91,7 +91,7 @@ Candidate best_for(double shininess, const Data& data) {
   return {fit, weighted_squares(fit, data, basis)};
 }
 
-// Golden section over log n.
+// Golden-section search over log n.
 PhongFit bottom_of(double a, double b, const Data& data) {
   const auto at = [&](double log_n) { return best_for(std::exp(log_n), data); };
   const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
@@ -115,7 +115,7 @@ PhongFit bottom_of(double a, double b, const Data& data) {
   return at(0.5 * (a + b)).fit;
 }
 
-// A scan over log n finds the valley, golden section its bottom.
+// A scan over log n finds the valley, golden-section search its minimum.
 PhongFit least_squares_fit(const Data& data) {
   constexpr int steps = 160;
   const double low = std::log(least_shininess), high = std::log(most_shininess);
@@ -133,7 +133,7 @@ PhongFit least_squares_fit(const Data& data) {
                    data);
 }
 
-// Weights and fit in turn.
+// Alternates weights and fit.
 PhongFit reweighted_fit(Data& data, ReflectanceNoise noise) {
   constexpr int most_rounds = 30;
   constexpr double agreed = 1e-9, reach = 0.3;  // of log n
@@ -143,7 +143,7 @@ PhongFit reweighted_fit(Data& data, ReflectanceNoise noise) {
     const PhongFit last = fit;
     data.shape = noise_shape(fit, data);
     const double log_n = std::log(fit.shininess);
-    // The first weights may move the valley; after that it only drifts.
+    // The first weights may move the valley; later changes are small.
     fit = round == 0 ? least_squares_fit(data)
                      : bottom_of(std::max(std::log(least_shininess), log_n - reach),
                                  std::min(std::log(most_shininess), log_n + reach), data);
@@ -156,10 +156,10 @@ PhongFit reweighted_fit(Data& data, ReflectanceNoise noise) {
   return fit;
 }
 
-// ---- standard errors
+// ---- Standard errors
 
-// The square roots of the diagonal of the inverse of A = J^T W J; nothing if J does not have full
-// rank. Columns are scaled to unit length first, so that rank is judged without units.
+// Square roots of the diagonal of the inverse of A = J^T W J; no value if J does not have full
+// rank. Columns are scaled to unit length first, so that the rank does not depend on units.
 std::optional<std::array<double, unknowns>> inverse_roots(const glm::dmat3& matrix) {
   glm::dvec3 scale;
   for (int k = 0; k < unknowns; ++k) {
@@ -193,12 +193,12 @@ PhongErrors standard_errors(const LeastSquaresFit& found, const Data& data) {
   const bool inside =
       fit.shininess > 1.01 * least_shininess && fit.shininess < 0.99 * most_shininess;
   if (inside) {
-    // An error larger than n itself is no longer one of first order: n could be anything.
+    // First order does not hold for an error larger than n itself: n is undetermined.
     if (const auto roots = inverse_roots(matrix); roots && s * (*roots)[2] < fit.shininess) {
       return {s * (*roots)[0], s * (*roots)[1], s * (*roots)[2]};
     }
   }
-  // n is not determined; k_d and k_s are, given any n as large (or small).
+  // n is undetermined; k_d and k_s are determined for any n as large (or small).
   matrix[2] = glm::dvec3(0.0, 0.0, 1.0);
   matrix[0][2] = matrix[1][2] = 0.0;
   const auto roots = inverse_roots(matrix);
@@ -206,7 +206,7 @@ PhongErrors standard_errors(const LeastSquaresFit& found, const Data& data) {
   return {s * (*roots)[0], s * (*roots)[1], {}};
 }
 
-// Does a lobe lower the sum of squares by more than chance does?
+// Whether a lobe lowers the sum of squares significantly.
 bool finds_lobe(const PhongFit& fit, const Data& data) {
   if (!(fit.specular > 0.0)) return false;
   double sum = 0.0, weights = 0.0, squares = 0.0;

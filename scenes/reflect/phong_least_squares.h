@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The least-squares half of fit_phong (phong_fit.h has the method and its source).
+// Least-squares part of fit_phong (phong_fit.h has the method and its source).
 #pragma once
 
 #include <optional>
@@ -15,8 +15,8 @@ inline constexpr double most_shininess = 20000.0;
 
 struct LeastSquaresFit {
   PhongFit fit;
-  std::vector<double> shape;  // of the noise: its standard deviation at each point is noise * shape
-  std::optional<double> noise;  // nothing when there are as many unknowns as points
+  std::vector<double> shape;    // standard deviation of each point = noise * shape
+  std::optional<double> noise;  // no value with as many unknowns as points
   bool lobe_found = false;      // by the F test
 };
 
@@ -24,7 +24,7 @@ struct LeastSquaresFit {
 [[nodiscard]] LeastSquaresFit fit_least_squares(std::span<const ReflectancePoint> points,
                                                 ReflectanceNoise noise);
 
-// max(0, cos), so that angles beyond 90 degrees show no lobe.
+// max(0, cos): no lobe beyond 90 degrees.
 [[nodiscard]] double lobe_cosine(double angle_deg);
 [[nodiscard]] double rms_residual(const PhongFit& fit, std::span<const ReflectancePoint> points);
 

@@ -12,15 +12,15 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr double same_normal = 1e-4;        // 1 - |cosine|: within 0.8 degrees
-constexpr double flat_deg = 0.05;           // what turns less is flat
-constexpr double least_cosine = 0.5;        // of the angle between a curve's end and its chord
+constexpr double flat_deg = 0.05;           // smaller rotations are flat
+constexpr double least_cosine = 0.5;        // between a curve's end and its chord
 constexpr std::uint32_t most_pieces = 256;  // of an edge
 
 double angle_deg(const Vec3& a, const Vec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), std::abs(glm::dot(a, b))) * 180.0 / base::pi;
 }
 
-// The inner Bezier point beside `from`, a third of the way to `to`.
+// The inner Bezier point next to `from`, a third of the distance to `to`.
 Vec3 inner_point(const Vec3& from, const Vec3& to, const std::vector<Vec3>& normals) {
   const Vec3 way = to - from;
   const auto alike = [&](const Vec3& normal) {
@@ -29,14 +29,14 @@ Vec3 inner_point(const Vec3& from, const Vec3& to, const std::vector<Vec3>& norm
   Vec3 along = way;
   if (std::all_of(normals.begin(), normals.end(), alike)) {
     along = way - glm::dot(way, normals.front()) * normals.front();
-  } else if (normals.size() == 2) {  // a crease runs along both of its faces
+  } else if (normals.size() == 2) {  // a crease follows both of its faces
     const Vec3 crease = glm::normalize(glm::cross(normals[0], normals[1]));
     along = glm::dot(way, crease) * crease;
   }
   const double chord = glm::length(way), tangent = glm::length(along);
   const double cosine = chord * tangent > 0.0 ? glm::dot(way, along) / (chord * tangent) : 0.0;
-  // A curve that runs across its own edge is none. Else as long as an arc wants it that leaves its
-  // chord by phi: (4/3) tan(phi/2) radii, the chord being 2 sin(phi) of them.
+  // A curve nearly perpendicular to its edge is rejected. The length suits an arc at the angle phi
+  // to its chord: (4/3) tan(phi/2) radii, where the chord is 2 sin(phi) radii.
   if (cosine < least_cosine) return from + way / 3.0;
   return from + along * (2.0 / 3.0 * chord / (tangent * (1.0 + cosine)));
 }
@@ -59,7 +59,7 @@ Vec3 unit(const Vec3& v) {
   return length > 0.0 ? v / length : Vec3(0.0);
 }
 
-// The polygons around each place: those of id k from first[k] to first[k + 1].
+// The polygons around each place: entries first[k] to first[k + 1] for id k.
 struct Around {
   std::vector<std::uint32_t> first, polygon;
 };
@@ -101,7 +101,7 @@ void EdgeCurves::find(const std::vector<Vec3>& place, double turn_deg) {
     return std::tie(a.low, a.high, a.number) < std::tie(b.low, b.high, b.number);
   });
   of_use_.resize(uses_.size());
-  curves_.reserve(uses_.size() / 2 + 1);  // most edges are of two faces
+  curves_.reserve(uses_.size() / 2 + 1);  // most edges have two faces
   for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
     for (; end < uses_.size() && uses_[end].low == uses_[begin].low &&
            uses_[end].high == uses_[begin].high;
@@ -113,7 +113,7 @@ void EdgeCurves::find(const std::vector<Vec3>& place, double turn_deg) {
   base::release(uses_);
 }
 
-// Of one edge.
+// Curve of one edge.
 EdgeCurve EdgeCurves::curve_of(std::span<const Use> uses, const std::vector<Vec3>& place,
                                double turn_deg) {
   std::vector<Vec3> low, high;
@@ -155,7 +155,7 @@ std::vector<Vec3> corner_normals(const Mesh& mesh, const std::vector<std::uint32
         const std::uint32_t id = ids[mesh.indices[k]];
         for (std::uint32_t n = around.first[id]; n < around.first[id + 1]; ++n) {
           const Vec3& other = areas[around.polygon[n]];
-          // Beyond a right angle a neighbour that is wound the other way is as likely.
+          // Beyond a right angle a neighbour of opposite winding is equally likely.
           if (glm::dot(unit(other), own) >= crease_cosine) sum += other;
         }
         if (glm::length(sum) > 0.0) normals[k] = unit(sum);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The curves that the edges of a mesh stand for: cubics from corner to corner, one for all the
-// faces of an edge, so that no gap opens between a side and the cap it meets at a crease.
+// Curves for the edges of a mesh that represents a curved surface: one cubic from corner to corner
+// for all faces of an edge, so that no gap opens between a side and a cap at a crease.
 #pragma once
 
 #include <array>
@@ -14,11 +14,11 @@
 
 namespace earthshine::scenes {
 
-// Bezier points from the end with the lower id to the other, and the pieces that it is cut into.
+// Bezier points from the end with the lower id to the other end, and the number of segments.
 struct EdgeCurve {
   std::array<Vec3, 4> points;
   std::uint32_t pieces = 1;
-  std::vector<std::uint32_t> vertices;  // of the new mesh, between the ends, once they are made
+  std::vector<std::uint32_t> vertices;  // vertices of the new mesh between the ends, once created
 };
 
 // The point at t in [0, 1] (de Casteljau).
@@ -26,16 +26,16 @@ struct EdgeCurve {
 
 class EdgeCurves {
  public:
-  // So many uses will be added.
+  // Reserves memory for this number of uses.
   void reserve(std::size_t uses) { uses_.reserve(uses); }
-  // A face has the edge from a to b, and these normals there; a and b are ids of places. Returns
-  // the number of this use of the edge: 0, 1, 2 ...
+  // Adds a face's edge from a to b with its normals there; a and b are ids of places. Returns the
+  // index of this use of the edge: 0, 1, 2 ...
   std::uint32_t add(std::uint32_t a, std::uint32_t b, const Vec3& normal_a, const Vec3& normal_b);
-  // Curves for all edges, after the last add(). At each end the curve leaves in the tangent plane
-  // of the faces' common normal (Vlachos, Peters, Boyd and Mitchell, "Curved PN triangles", 2001),
-  // or along the crease of two, as far as an arc does (Goldapp, "Approximation of circular arcs by
-  // cubic polynomials", 1991); it is cut so that no piece turns by more than turn_deg. place: of an
-  // id.
+  // Computes curves for all edges, after the last add(). At each end the curve starts in the
+  // tangent plane of the faces' common normal (Vlachos, Peters, Boyd and Mitchell, "Curved PN
+  // triangles", 2001), or along the crease of two normals, with the length for an arc (Goldapp,
+  // "Approximation of circular arcs by cubic polynomials", 1991). It is divided so that no segment
+  // turns by more than turn_deg. place: position for each id.
   void find(const std::vector<Vec3>& place, double turn_deg);
 
   [[nodiscard]] EdgeCurve& of_use(std::uint32_t use) { return curves_[of_use_[use]]; }
@@ -53,12 +53,12 @@ class EdgeCurves {
   std::vector<EdgeCurve> curves_;
 };
 
-// Normals of the surface that a mesh stands for, at the corners of its polygons.
+// Normals, at the corners of the polygons, of the surface that a mesh represents.
 
-// One for each of mesh.indices, of unit length, on its polygon's side: the file's own where it has
-// one; else, with crease_deg, the mean of the normals of the polygons around the corner's place
-// that are turned less than that against its own, by area; else its polygon's. ids: of the
-// vertices, equal at one place (health/topology.h).
+// One unit normal for each of mesh.indices, on its polygon's side. The file's normal has priority;
+// otherwise, with crease_deg, the area-weighted mean of the normals around the corner that differ
+// by less than crease_deg from the polygon's; else the polygon's normal. ids: of the vertices,
+// equal at equal positions (health/topology.h).
 [[nodiscard]] std::vector<Vec3> corner_normals(const Mesh& mesh,
                                                const std::vector<std::uint32_t>& ids,
                                                std::optional<double> crease_deg);

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t most_round_triangles = std::size_t{1} << 24;
 
-// A triangle that a polygon is cut into: its corners, into Mesh::indices, and the first of the uses
-// of its edges (edge_curves.h): from corner k to the next it is the k-th after.
+// A triangle of a polygon: its corners, as indices into Mesh::indices, and the first of its edge
+// uses (edge_curves.h). The use from corner k to the next is the k-th after it.
 struct Piece {
   std::array<std::uint32_t, 3> corner;
   std::uint32_t first_use = 0;
@@ -65,7 +65,7 @@ class Rounder {
  private:
   void cut(std::size_t p) {
     const MeshPolygon& polygon = mesh_.polygons[p];
-    if (polygon.count > max_polygon_corners) return;  // refused when it is placed
+    if (polygon.count > max_polygon_corners) return;  // reported when it is placed
     std::vector<Vec3> corners;
     for (std::uint32_t k = 0; k < polygon.count; ++k) {
       corners.push_back(mesh_.vertices[mesh_.indices[polygon.first + k]]);
@@ -78,7 +78,7 @@ class Rounder {
   }
 
   [[nodiscard]] std::uint32_t id(std::uint32_t corner) const { return ids_[mesh_.indices[corner]]; }
-  // From corner k of the piece to the next.
+  // Edge from corner k of the triangle to the next.
   EdgeCurve& edge(const Piece& piece, std::size_t k) {
     return curves_.of_use(piece.first_use + static_cast<std::uint32_t>(k));
   }
@@ -108,7 +108,7 @@ class Rounder {
            const MeshPolygon& polygon) {
     add_polygon(made_, corners, polygon.part_set, polygon.material, polygon.line);
     made_.uv_indices.insert(made_.uv_indices.end(), uv.begin(), uv.end());
-    // Only the side that it is on counts from here on.
+    // From here on only the side of the normals matters.
     if (polygon.first < mesh_.normal_indices.size()) {
       made_.normal_indices.resize(made_.indices.size() - corners.size(), no_index);
       made_.normal_indices.insert(made_.normal_indices.end(), corners.size(),
@@ -124,7 +124,7 @@ class Rounder {
     return corner < mesh_.uv_indices.size() ? mesh_.uv_indices[corner] : no_index;
   }
 
-  // Vertex k of the pieces of the edge that begins at corner `from`, at k / pieces of the way.
+  // Vertex k on the curve of the edge that begins at corner `from`, at k / pieces of its length.
   std::uint32_t on_edge(const Piece& piece, std::size_t from, std::uint32_t k) {
     EdgeCurve& curve = edge(piece, from);
     const std::uint32_t a = piece.corner[from], b = piece.corner[(from + 1) % 3];
@@ -139,13 +139,13 @@ class Rounder {
     return curve.vertices[id(a) < id(b) ? k - 1 : curve.pieces - 1 - k];
   }
 
-  // A point of a refined triangle, by the corners' weights in n-ths.
+  // A point of a refined triangle, with corner weights in multiples of 1/n.
   struct Point {
     std::uint32_t vertex = 0, uv = no_index;
   };
 
-  // The cubic patch whose edges are the curves (Vlachos and others 2001): at weights w of its
-  // corners sum b_ijk 3!/(i! j! k!) w^ijk, the middle point from the others.
+  // The cubic patch whose edges are the curves (Vlachos and others 2001): for corner weights w, the
+  // sum of b_ijk 3!/(i! j! k!) w^ijk. The middle point follows from the others.
   [[nodiscard]] Vec3 patch_point(const Piece& piece, const Vec3& w) {
     Vec3 sum(0.0), edges(0.0), ends(0.0);
     for (int k = 0; k < 3; ++k) {
@@ -170,8 +170,8 @@ class Rounder {
     Point made;
     const auto zero = static_cast<std::size_t>(std::find(at.begin(), at.end(), 0U) - at.begin());
     if (zero < 3) {
-      // On the edge opposite the corner: the neighbour cuts it into its own number of pieces, and
-      // the nearest of these points is taken.
+      // On the edge opposite the corner the neighbour has its own number of segments; uses the
+      // nearest of its points.
       const std::size_t from = (zero + 1) % 3, to = (zero + 2) % 3;
       const std::uint32_t pieces = edge(piece, from).pieces;
       const auto k = static_cast<std::uint32_t>(std::lround(share[to] * pieces));
@@ -203,7 +203,7 @@ class Rounder {
   void refine(const Piece& piece, const MeshPolygon& polygon) {
     const std::uint32_t n = most(piece);
     std::vector<Point> above, row;
-    for (std::uint32_t i = 0; i <= n; ++i) {  // rows from corner 0 to the edge opposite
+    for (std::uint32_t i = 0; i <= n; ++i) {  // rows from corner 0 to the opposite edge
       row.clear();
       for (std::uint32_t j = 0; j <= i; ++j) row.push_back(point(piece, n, {n - i, i - j, j}));
       for (std::uint32_t j = 0; j < i; ++j) {
@@ -224,7 +224,7 @@ class Rounder {
   const Mesh& mesh_;
   const base::Location& where_;
   std::vector<std::uint32_t> ids_;  // per vertex: equal at one place
-  std::vector<Vec3> normals_;       // per entry of mesh_.indices
+  std::vector<Vec3> normals_;       // per vertex: equal at equal positions
   std::vector<std::vector<Piece>> pieces_;
   EdgeCurves curves_;
   Mesh made_;

@@ -20,7 +20,7 @@ using base::Error;
 
 constexpr std::size_t max_attitude_bytes = std::size_t{16} << 20;
 constexpr double same_deg = 1e-3;      // of angles with six digits
-constexpr double length_slack = 0.01;  // quaternions are often given with three digits
+constexpr double length_slack = 0.01;  // quaternions often have three digits
 constexpr const char* wanted_columns =
     "a header names time_s or position_deg, and qw, qx, qy, qz or yaw_deg, pitch_deg, roll_deg";
 
@@ -41,7 +41,7 @@ struct Field {
   base::Location where;
 };
 
-// The fields of a line, blanks around them left out; none when it is blank or a comment.
+// The fields of a line without blanks; empty for a blank line or a comment.
 std::vector<Field> fields_of(std::string_view line, const std::string& file, int number) {
   const char* const start = line.data();
   line = line.substr(0, line.find('#'));
@@ -180,19 +180,19 @@ class AttitudeReader {
            about({1, 0, 0}, value[Roll]);
   }
 
-  // Of a row: yaw, pitch and roll, deg.
+  // Yaw, pitch and roll of a row, deg.
   struct Row {
     std::array<double, 3> angle_deg;
     int line;
   };
 
-  // From one row to the next the angle of the turn, the shorter way, deg.
+  // Rotation angle from one row to the next, by the shorter way, deg.
   [[nodiscard]] double turn_deg(std::size_t row) const {
     const double cosine = std::abs(glm::dot(table_.turns[row], table_.turns[row + 1]));
     return 2.0 * base::degrees(std::acos(std::min(cosine, 1.0)));
   }
 
-  // As the angle is written, and the shorter way.
+  // Difference of an angle as written, and by the shorter way.
   [[nodiscard]] double step_deg(std::size_t row, std::size_t angle) const {
     return rows_[row + 1].angle_deg[angle] - rows_[row].angle_deg[angle];
   }
@@ -200,8 +200,8 @@ class AttitudeReader {
     return std::remainder(step_deg(row, angle), 360.0);
   }
 
-  // Whether the step before or after goes on like this one, taken the shorter way: then the angle
-  // has but passed from 360 to 0, or from 180 to -180.
+  // Whether the step before or after continues this one, by the shorter way: then the angle only
+  // wraps from 360 to 0, or from 180 to -180.
   [[nodiscard]] bool only_wraps(std::size_t row, std::size_t angle) const {
     constexpr double jitter_deg = 5.0, alike = 3.0;
     const double step = short_step_deg(row, angle);
@@ -214,13 +214,13 @@ class AttitudeReader {
     return (row > 0 && goes_on(row - 1)) || (row + 2 < rows_.size() && goes_on(row + 1));
   }
 
-  // Yaw and roll both turn over where the nose passes the zenith: another name for a small turn.
+  // Yaw and roll both jump where the nose passes the zenith, although the rotation is small.
   [[nodiscard]] bool passes_zenith(std::size_t row) const {
     const auto over = [](double step) { return std::abs(step) >= 90.0 && std::abs(step) <= 270.0; };
     return turn_deg(row) < 90.0 && over(step_deg(row, 0)) && over(step_deg(row, 2));
   }
 
-  // The angle that makes a step of half a turn or more; none: its number is that of the angles.
+  // The angle with a step of half a turn or more; if none, the number of angles.
   [[nodiscard]] std::size_t wide_angle(std::size_t row) const {
     std::size_t angle = 0;
     while (angle < 3 && (std::abs(step_deg(row, angle)) < 180.0 - same_deg ||

@@ -21,8 +21,8 @@ Vec3 sun_at(double beta_deg, double position_deg) {
           std::cos(beta) * std::cos(position)};
 }
 
-// From the local-vertical frame at one position to that at another: the frame turns about the
-// normal, velocity away from the zenith, as far as the spacecraft goes.
+// Transforms from the local-vertical frame at one position to the frame at another: it rotates
+// about the normal, velocity away from the zenith, by the angle that the spacecraft travels.
 Vec3 carried(const Vec3& d, double from_deg, double to_deg) {
   const double angle = base::radians(to_deg - from_deg);
   const double cosine = std::cos(angle), sine = std::sin(angle);
@@ -47,8 +47,8 @@ glm::dquat turn_at(const AttitudeTable& table, double at, double position_deg) {
   return glm::normalize(glm::slerp(table.turns[row - 1], table.turns[row], share));
 }
 
-// A turn takes the axes (nose, starboard, belly) from (velocity, -normal, -zenith) to where they
-// are.
+// An attitude rotates the axes (nose, starboard, belly) from (velocity, -normal, -zenith) to their
+// directions.
 BodyAxes turned_axes(const glm::dquat& turn) {
   const auto local = [&turn](const Vec3& d) {
     const Vec3 there = turn * d;
@@ -70,8 +70,8 @@ BodyAxes axes_at(const Orbit& orbit, double position_deg, double time_s) {
   return named_axes(orbit.attitude, sun_at(orbit.beta_deg, position_deg));
 }
 
-// Half of the arc, deg, over which the Sun stands within limit_rad of the Earth's centre; nothing
-// when it never does.
+// Half of the arc, deg, on which the Sun is within limit_rad of the Earth's centre; no value if it
+// never is.
 std::optional<double> half_arc_deg(double beta_deg, double limit_rad) {
   const double highest = std::cos(base::radians(beta_deg)), limit = std::cos(limit_rad);
   if (limit >= highest) return std::nullopt;

@@ -26,7 +26,7 @@ double albedo_at(const LatitudeAlbedo& law, double sin_latitude) {
 }
 
 double largest_albedo(const LatitudeAlbedo& law) {
-  // A parabola in sin(latitude): at a pole, or at its top.
+  // A parabola in sin(latitude): the maximum is at a pole or at the vertex.
   const double top = law.a2 < 0.0 ? std::clamp(-law.a1 / (3.0 * law.a2), -1.0, 1.0) : 1.0;
   return std::max({albedo_at(law, -1.0), albedo_at(law, 1.0), albedo_at(law, top)});
 }
@@ -80,8 +80,8 @@ bool earth_is_lit(const Scene& scene) {
     return false;
   }
   if (earth.by_latitude && largest_albedo(*earth.by_latitude) <= 0.0) return false;
-  // The visible cap reaches acos(R / (R + h)) = 90 deg - half angle around the sub-spacecraft
-  // point; some of it is lit if the Sun stands less than 90 deg further from that point.
+  // The visible cap extends acos(R / (R + h)) = 90 deg - half angle around the sub-spacecraft
+  // point. Part of it is lit if the Sun is less than 90 deg farther from that point.
   const double sun_from_zenith =
       std::acos(std::clamp(glm::dot(-earth.direction, scene.sun->direction), -1.0, 1.0));
   const double cap = base::pi / 2 - base::radians(earth.half_angle_deg);
@@ -112,8 +112,8 @@ Vec3 SunDirections::operator()(double u, double v) const {
   return partly_ ? beside_earth(u, v) : disc_.sample(u, v);
 }
 
-// How far from the Sun's middle, by halving: what is left within grows with it; then along what is
-// left of that rim.
+// Radius from the Sun's middle by bisection, since the visible area within it increases; then the
+// angle along the visible part of that circle.
 Vec3 SunDirections::beside_earth(double u, double v) const {
   const double wanted = u * partly_->left(partly_->radius);
   double low = 0.0, high = partly_->radius;

@@ -9,7 +9,7 @@ namespace {
 
 using base::pi;
 
-// Sectors in proportion to `spans`, one per ring at least, `wanted` in all as nearly as that goes.
+// Numbers of sectors in proportion to `spans`, at least one per ring, about `wanted` in total.
 std::vector<std::size_t> share_out(const std::vector<double>& spans, std::size_t wanted) {
   double sum = 0.0;
   for (const double span : spans) sum += span;
@@ -57,7 +57,7 @@ void SkyCells::visit_grid(std::size_t cell, const std::vector<double>& shares,
     const double phi = sector * (static_cast<double>(cell - first_[ring]) + along);
     around.emplace_back(std::cos(phi), std::sin(phi));
   }
-  // Equal steps of 1 - cos are equal solid angles; written by half angles, which keeps small ones.
+  // Equal steps of 1 - cos are equal solid angles; half angles avoid cancellation for small angles.
   const auto one_minus_cos = [](double angle) { return 2.0 * std::pow(std::sin(angle / 2), 2); };
   const double from = ring == 0 ? 0.0 : one_minus_cos(bounds_rad_[ring - 1]);
   const double height = one_minus_cos(bounds_rad_[ring]) - from;
@@ -89,7 +89,8 @@ void SkyCells::visit_lattice(std::size_t cell, int side,
 SkyCells cells_of_disc(const Vec3& direction, double half_angle_rad, std::size_t wanted) {
   const auto rings = static_cast<std::size_t>(
       std::max(1.0, std::round(std::sqrt(static_cast<double>(wanted) / 4.0))));
-  // From the axis by angle t the ground lies gamma = asin(sin t / sin h) - t from the point below.
+  // At angle t from the axis, the ground point is gamma = asin(sin t / sin h) - t from the
+  // subpoint.
   const auto gamma = [&](double t) {
     return std::asin(std::min(1.0, std::sin(t) / std::sin(half_angle_rad))) - t;
   };
@@ -107,14 +108,14 @@ SkyCells cells_of_disc(const Vec3& direction, double half_angle_rad, std::size_t
       (progress(middle) < goal ? low : high) = middle;
     }
     bounds.push_back(ring == rings ? half_angle_rad : high);
-    // Around a ring the ground's tilt to the Sun swings by sin(gamma).
+    // Along a ring the ground's tilt to the Sun varies by sin(gamma).
     spans.push_back(gamma(bounds.back()) + 0.2 * whole * goal);
   }
   return SkyCells(direction, std::move(bounds), share_out(spans, wanted));
 }
 
 SkyCells cells_of_sphere(std::size_t wanted) {
-  // n rings of equal width around a sphere of 4 pi with square cells: 4 n^2 / pi cells.
+  // n rings of equal width on a sphere of 4 pi with square cells: 4 n^2 / pi cells.
   const auto rings = static_cast<std::size_t>(
       std::max(2.0, std::round(std::sqrt(static_cast<double>(wanted) * pi / 4.0))));
   std::vector<double> bounds, spans;

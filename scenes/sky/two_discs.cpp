@@ -9,19 +9,19 @@
 namespace earthshine::scenes {
 namespace {
 
-// 1 - cos x without loss where x is small.
+// 1 - cos x without cancellation for small x.
 double versine(double x) {
   const double half = std::sin(0.5 * x);
   return 2.0 * half * half;
 }
 
-// The spherical triangle of both centres and a point where the rims cross, by its sides.
+// Spherical triangle of both centres and an intersection of the rims, from its sides.
 struct Triangle {
-  double p, a, b, separation;  // p: half of the sides' sum
+  double p, a, b, separation;  // p: half the sum of the sides
   Triangle(double of_a, double of_b, double apart)
       : p(0.5 * (of_a + of_b + apart)), a(of_a), b(of_b), separation(apart) {}
   [[nodiscard]] bool is_one() const { return p > a && p > b && p > separation; }
-  // At the centre whose disc has radius `own`.
+  // Angle at the centre of the disc with radius `own`.
   [[nodiscard]] double angle(double own, double other) const {
     return 2.0 * std::atan2(std::sqrt(std::sin(p - own) * std::sin(p - separation)),
                             std::sqrt(std::sin(p) * std::sin(p - other)));

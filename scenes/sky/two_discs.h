@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two discs on the sphere of directions, as the Sun's and the Earth's, one before the other. Angles
-// in radians, of discs up to a half sphere.
+// Two overlapping discs on the sphere of directions, such as the Sun's and the Earth's. Angles in
+// radians; discs up to a hemisphere.
 #pragma once
 
 namespace earthshine::scenes {
 
-// Of one disc, sr.
+// Solid angle of one disc, sr.
 [[nodiscard]] double disc_solid_angle(double radius);
 
-// Of the rim of a disc of radius `rim` that the other, of radius `other` about a centre at
-// `separation`, covers: half of the arc about the rim's own centre, 0 to pi.
+// Arc of the rim of a disc of radius `rim` that another disc, of radius `other` at distance
+// `separation`, covers: half the arc's angle about the rim's centre, 0 to pi.
 [[nodiscard]] double covered_half_arc(double rim, double other, double separation);
 
-// Solid angle of what both cover, sr: two sectors less the kite of both centres and the points
-// where the rims cross (Tovchigrechko and Vakser 2001 give the same sum; here the angles are by
-// half-angle formulas and the kite by L'Huilier's, so that discs of a thousandth of a degree keep
-// nine digits).
+// Solid angle of the intersection, sr: two sectors minus the kite of both centres and the
+// intersections of the rims. Tovchigrechko and Vakser 2001 have the same sum. Here half-angle
+// formulas give the angles and L'Huilier's formula the kite, so that discs of a thousandth of a
+// degree are accurate to nine digits.
 [[nodiscard]] double shared_solid_angle(double a, double b, double separation);
 
-// A disc and another that may hide some of it: the Sun's and the Earth's.
+// A disc and another that may hide part of it: the Sun's and the Earth's.
 struct SunAndEarth {
   double radius, limb, separation;
-  // Solid angle of what the Earth leaves of the Sun, as far as `rim` from its middle.
+  // Solid angle of the part of the Sun within `rim` of its middle that the Earth does not hide.
   [[nodiscard]] double left(double rim) const {
     return disc_solid_angle(rim) - shared_solid_angle(rim, limb, separation);
   }

@@ -14,7 +14,7 @@ std::filesystem::path confined_path(const std::filesystem::path& base_folder,
                                     std::string_view named,
                                     std::span<const std::filesystem::path> folders,
                                     const base::Location& asked_at) {
-  // A backslash separates folders only on Windows; here it would hide a climb from the check below.
+  // A backslash separates folders only on Windows; here it could hide ".." from the check below.
   const std::filesystem::path relative{std::string(named)};
   const bool has_drive = named.size() > 1 && named[1] == ':';
   const bool strange = named.find('\\') != std::string_view::npos ||
@@ -26,7 +26,7 @@ std::filesystem::path confined_path(const std::filesystem::path& base_folder,
                 "Put it beside the mesh and correct the path");
   }
   std::error_code problem;
-  // Absolute first: of a relative path without any part that exists nothing would be resolved.
+  // Made absolute first: a relative path without any existing component would not be resolved.
   const auto resolved = [&](const std::filesystem::path& path) {
     return std::filesystem::weakly_canonical(std::filesystem::absolute(path, problem), problem);
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that a mesh names, kept inside the folders they belong to.
+// Confines files that a mesh references to the permitted folders.
 #pragma once
 
 #include <filesystem>
@@ -10,9 +10,9 @@
 
 namespace earthshine::scenes {
 
-// A file that another file names by a relative path, which may not lead out of the given folders: a
-// mesh from elsewhere must not make the program read files it has no business with. Throws
-// base::Error (Input) at asked_at if `named` is absolute or leads out of all of them.
+// Resolves a relative path in a file, which must not leave the given folders: a foreign mesh must
+// not make the program read unrelated files. Throws base::Error (Input) at asked_at if `named` is
+// absolute or leaves all of them.
 [[nodiscard]] std::filesystem::path confined_path(const std::filesystem::path& base_folder,
                                                   std::string_view named,
                                                   std::span<const std::filesystem::path> folders,

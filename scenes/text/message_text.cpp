@@ -12,7 +12,7 @@ namespace earthshine::scenes {
 
 std::string printable(std::string_view text, std::size_t longest) {
   if (text.size() <= longest) return base::escaped(text);
-  // Not within a character; a byte that is none does not matter.
+  // Do not cut inside a UTF-8 character; invalid bytes do not matter.
   std::size_t end = longest;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
   return base::escaped(text.substr(0, end)) + "...";
@@ -42,9 +42,9 @@ std::string listed(std::span<const std::string> words) {
 }
 
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
-  if (word.size() > 200) return {};  // the distance costs length times length
+  if (word.size() > 200) return {};  // the edit distance costs the square of the length
   std::string nearest = base::nearest_word(word, candidates);
-  // "fov" for "fov_deg" is far by edits but means it.
+  // "fov" for "fov_deg" has a large edit distance but is a likely match.
   for (const std::string& candidate : candidates) {
     if (nearest.empty() && word.size() > 2 && candidate.starts_with(word)) nearest = candidate;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text that users or files gave, made fit for a message on one line.
+// Formats text from users or files for one-line messages.
 #pragma once
 
 #include <cstddef>
@@ -11,25 +11,25 @@
 
 namespace earthshine::scenes {
 
-// As base::escaped() has it; cut after `longest` bytes.
+// Escaped as by base::escaped(), and cut after `longest` bytes.
 [[nodiscard]] std::string printable(std::string_view text, std::size_t longest);
 
-// The same in quotes, cut at 80 bytes.
+// Printable text in quotes, cut at 80 bytes.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
-// Two significant digits without a power of ten: 0.0013, 2000. value: 0 or more.
+// Two significant digits without an exponent: 0.0013, 2000. value: 0 or more.
 [[nodiscard]] std::string two_digits(double value);
 
-// The same of a share: "0.0013 %", "130 %".
+// A share with two digits: "0.0013 %", "130 %".
 [[nodiscard]] std::string percent(double share);
 
-// "a, b, c", at most 20 of them and then "and N more".
+// "a, b, c": at most 20 words, then "and N more".
 [[nodiscard]] std::string listed(std::span<const std::string> words);
 
-// "Did you mean "x"?", or "" when nothing is near.
+// "Did you mean "x"?", or "" without a similar candidate.
 [[nodiscard]] std::string did_you_mean(std::string_view word,
                                        std::span<const std::string> candidates);
-// Of any range of strings.
+// For any range of strings.
 template <class Words>
 [[nodiscard]] std::string did_you_mean(std::string_view word, const Words& candidates) {
   const std::vector<std::string> words(std::begin(candidates), std::end(candidates));

@@ -91,7 +91,7 @@ double TextLines::number(const Word& word) const {
   const bool whole_word = end == text.data() + text.size();
   if (problem == std::errc::result_out_of_range && whole_word &&
       (text.find("e-") != std::string_view::npos || text.find("E-") != std::string_view::npos)) {
-    return 0.0;  // too small to tell from it
+    return 0.0;  // too small for the type
   }
   if (problem == std::errc::invalid_argument || !whole_word) {
     throw base::Error(base::Blame::Input, where(word),
@@ -117,7 +117,7 @@ double TextLines::number(std::size_t word) const {
 }
 
 Vec3 TextLines::vector() const {
-  // A line that is too short says how many it wants, whichever is asked for first.
+  // A line that is too short reports the required number of words, whichever is requested first.
   if (words_.size() < 4) return Vec3(number(std::size_t{3}));
   return {number(words_[1]), number(words_[2]), number(words_[3])};
 }

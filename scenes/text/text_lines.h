@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Words of a text file, line by line, each with its place; and numbers from words. OBJ, MTL, PLY
-// and STL; the fields of CSV files.
+// Splits a text file into words with their places, line by line, and parses numbers. Used for OBJ,
+// MTL, PLY and STL, and for the fields of CSV files.
 #pragma once
 
 #include <cstdint>
@@ -20,16 +20,17 @@ struct Word {
   int column = 0;
 };
 
-// Of its letters A to Z.
+// Converts A to Z only.
 [[nodiscard]] std::string lower_case(std::string text);
 
-// Without DOS's mark of a file's end, 0x1A, and the zeros and blanks that follow it.
+// Removes the DOS end-of-file mark, 0x1A, with the zeros and blanks that follow it.
 [[nodiscard]] std::string_view without_end_mark(std::string_view text);
 
 class TextLines {
  public:
-  // `file` is for messages; the text begins after lines_before lines of it. In OBJ and MTL, '#' at
-  // the start of a word opens a comment and a backslash before the line's end joins the next line.
+  // `file` is for messages; the text begins after its first lines_before lines. In OBJ and MTL, '#'
+  // at the start of a word begins a comment, and a backslash at the end of a line joins the next
+  // line.
   enum class Style { Plain, Wavefront };
   TextLines(std::string_view text, std::string file, Style style, int lines_before = 0)
       : text_(without_end_mark(text)),
@@ -38,11 +39,11 @@ class TextLines {
         style_(style),
         line_(lines_before) {}
 
-  // Goes to the next line that holds words; false at the end.
-  // Throws base::Error (Input) at a NUL byte: the file is not text.
+  // Advances to the next line with words; false at the end. Throws base::Error (Input) at a NUL
+  // byte: the file is not text.
   [[nodiscard]] bool next();
   [[nodiscard]] const std::vector<Word>& words() const { return words_; }
-  // From the second word to the end of the last: a name with spaces.
+  // From the second word to the end of the last word: a name with spaces.
   [[nodiscard]] std::string_view argument() const;
   [[nodiscard]] int line() const { return words_.empty() ? line_ : words_.front().line; }
 
@@ -54,14 +55,14 @@ class TextLines {
   // Finite and at most largest_coordinate in magnitude.
   [[nodiscard]] double number(const Word& word) const;
   [[nodiscard]] double number(std::size_t word) const;  // an error if the line has no such word
-  // The first three after the line's keyword.
+  // The first three words after the line's keyword.
   [[nodiscard]] Vec3 vector() const;
 
  private:
   void read_line();
 
   std::string_view text_;
-  std::size_t nul_;  // where the first NUL byte is
+  std::size_t nul_;  // position of the first NUL byte
   std::string file_;
   Style style_;
   std::size_t position_ = 0;
@@ -69,13 +70,13 @@ class TextLines {
   std::vector<Word> words_;
 };
 
-// Without blanks at its ends.
+// Without leading and trailing blanks.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 
-// A number that fills the text, blanks around it aside; "nan" and "inf" are such.
+// A number that fills the text except for blanks around it; accepts "nan" and "inf".
 [[nodiscard]] std::optional<double> number_in(std::string_view text);
 
-// A whole number that fills the text; false otherwise.
+// An integer that fills the text; false otherwise.
 [[nodiscard]] bool parse_whole(std::string_view text, std::int64_t& value);
 
 }  // namespace earthshine::scenes

@@ -33,7 +33,7 @@ TomlNode convert(const toml::node& node, const std::string& file) {
     for (const auto& [key, value] : *table) {
       entries.push_back({std::string(key.str()), place(key.source(), file), convert(value, file)});
     }
-    // toml++ sorts by key; errors are to come in the order in which the user reads the file.
+    // toml++ sorts by key; errors should be in the order of the file.
     std::stable_sort(entries.begin(), entries.end(), [](const TomlEntry& a, const TomlEntry& b) {
       return std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
     });
@@ -64,7 +64,7 @@ TomlNode convert(const toml::node& node, const std::string& file) {
 using base::Blame;
 using base::Error;
 
-// What a picture, a solution or a mesh begins with that is given in place of a scene.
+// First bytes of a picture, a solution or a mesh given instead of a scene.
 constexpr std::pair<std::string_view, std::string_view> other_kinds[] = {
     {"\x76\x2f\x31\x01", "an OpenEXR picture"},
     {"\x89PNG", "a PNG picture"},
@@ -74,14 +74,13 @@ constexpr std::pair<std::string_view, std::string_view> other_kinds[] = {
 
 enum class Inside { Bare, Comment, Basic, Literal, BasicLines, LiteralLines };
 
-// Follows strings and comments just far enough to know where the text stands. A string that the
-// line's end cuts off is left to the parser to complain about.
+// Tracks strings and comments to locate bare text. The parser reports unterminated strings.
 struct Scanner {
   std::string_view text;
   Inside inside = Inside::Bare;
   int dots = 0;
 
-  // The number of bytes that belong together at `i`.
+  // Number of bytes that form one unit at `i`.
   std::size_t step(std::size_t i) {
     const char c = text[i];
     const bool triple = text.substr(i, 3) == "\"\"\"" || text.substr(i, 3) == "'''";
@@ -128,7 +127,7 @@ struct Scanner {
     dots = 0;
   }
 
-  // One or two quotes may stand right before the closing three.
+  // One or two quotes may directly precede the closing three.
   std::size_t closing_quotes(std::size_t i, char quote) {
     inside = Inside::Bare;
     std::size_t count = 3;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// TOML text to a plain tree whose every key and value knows its place. toml_file.cpp is the only
-// user of toml++, which is kept from texts that it cannot digest.
+// Parses TOML text to a plain tree in which every key and value has its place. toml_file.cpp is the
+// only user of toml++; it rejects texts that toml++ cannot handle.
 #pragma once
 
 #include <cstddef>
@@ -34,22 +34,22 @@ struct TomlEntry {
   TomlNode node;
 };
 
-// Null when the table has no such key.
+// Null if the table lacks the key.
 [[nodiscard]] const TomlEntry* find_entry(const TomlTable& table, std::string_view key);
 [[nodiscard]] TomlEntry* find_entry(TomlTable& table, std::string_view key);
 
 // The root table. Throws base::Error (Input) at file:line:column for text that is not TOML.
 [[nodiscard]] TomlNode parse_toml(std::string_view text, const std::string& file);
 
-// The root table of a file. Throws as parse_toml, and for what is no file on disk or another kind
-// of file.
+// The root table of a file. Throws as parse_toml, and if the path is not a regular file or the file
+// is of another kind.
 [[nodiscard]] TomlNode read_toml(const std::filesystem::path& path);
 
 // "the string "abc"", "the number 3", "a table": for messages.
 [[nodiscard]] std::string describe(const TomlNode& node);
 
-// What toml++ must not be given: some characters outside strings end in undefined behaviour, and
-// deeply dotted keys in a stack overflow (both measured on 3.3 and 3.4).
+// Guards against input that toml++ cannot handle: some characters outside strings cause undefined
+// behaviour, and keys with many dots overflow the stack (both measured on 3.3 and 3.4).
 
 inline constexpr std::size_t max_toml_bytes = std::size_t{1} << 20;
 inline constexpr std::size_t max_toml_line_bytes = std::size_t{8} << 10;

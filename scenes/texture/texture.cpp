@@ -83,7 +83,7 @@ glm::dvec4 Texture::texel(int x, int y) const {
 
 glm::dvec4 Texture::at(const glm::dvec2& uv) const {
   const bool is_number = !std::isnan(uv.x) && !std::isnan(uv.y);
-  // Far-away coordinates repeat long before they leave whole numbers.
+  // Clamped so that the conversion to integers cannot overflow.
   const double x = is_number ? std::clamp(uv.x * width_, -1e15, 1e15) : 0.0;
   const double y = is_number ? std::clamp(uv.y * height_, -1e15, 1e15) : 0.0;
   const auto column = [&](double k) {
@@ -117,7 +117,7 @@ void PictureShelf::prepare(const std::vector<Picture>& pictures) {
       try {
         made[k] = std::make_shared<const Texture>(
             base::read_pixels(fresh[k]->bytes, fresh[k]->reading.name), fresh[k]->reading);
-      } catch (const base::Error& error) {  // said by take()
+      } catch (const base::Error& error) {  // reported by take()
         if (error.blame() != base::Blame::Input) throw;
       }
     }

@@ -52,7 +52,7 @@ std::string names_of(const Table& table) {
   return text;
 }
 
-// Julian dates in two parts, the first one whole or half.
+// Julian dates in two parts; the first one is an integer or half-integer.
 struct Date {
   double whole, rest;
 };
@@ -74,7 +74,7 @@ Date ut1_date(Instant t, EarthClock clock) {
   return ut1;
 }
 
-// ERFA's matrices have rows of components; GLM's have columns.
+// ERFA's matrices are stored by rows, GLM's by columns.
 glm::dmat3 matrix_of(const double rows[3][3]) {
   glm::dmat3 m;
   for (int row = 0; row < 3; ++row) {
@@ -84,12 +84,13 @@ glm::dmat3 matrix_of(const double rows[3][3]) {
 }
 Vec3 vector_of(const double v[3]) { return {v[0], v[1], v[2]}; }
 
-// The scale's own calendar to TAI.
+// Calendar date in the given scale to TAI.
 std::optional<Instant> instant_of(int year, int month, int day, int hour, int minute, double second,
                                   TimeSystem system, EarthClock clock) {
   Date date{};
   const char* const scale = system == TimeSystem::Utc ? "UTC" : "TAI";
-  // A negative status is a date that does not exist; +1 and +2 a year far off, or past the day.
+  // Negative status: the date does not exist. +1 and +2: a distant year, or a time after the day's
+  // end.
   const int status =
       eraDtf2d(scale, year, month, day, hour, minute, second, &date.whole, &date.rest);
   if (status < 0 || status == 2 || status == 3) return std::nullopt;
@@ -212,7 +213,7 @@ std::optional<Instant> instant_of_mjd(double day, double seconds, TimeSystem sys
 }
 
 std::string utc_text(Instant t) {
-  // Half a millisecond more, so that the digits that are cut off round.
+  // Adds half a millisecond, so that truncation rounds.
   const Date utc = utc_date(t + 0.5e-3);
   int year = 0, month = 0, day = 0;
   int part[4] = {};
@@ -257,8 +258,8 @@ glm::dmat3 to_gcrs(Frame frame, Instant t, EarthClock clock) {
       eraPnm06a(tt.whole, tt.rest, m);
       return glm::transpose(matrix_of(m));
     case Frame::Teme: {
-      // The mean equinox lies east of the true one by the equation of the equinoxes, along the
-      // true equator: Vallado, "Fundamentals of astrodynamics and applications", 4th ed., 3.7.
+      // The mean equinox lies east of the true one, along the true equator, by the equation of the
+      // equinoxes: Vallado, "Fundamentals of astrodynamics and applications", 4th ed., 3.7.
       eraPnm06a(tt.whole, tt.rest, m);
       eraRz(eraEe06a(tt.whole, tt.rest), m);
       return glm::transpose(matrix_of(m));
@@ -284,7 +285,7 @@ State to_gcrs(const State& state, Frame frame, Instant t, EarthClock clock) {
 Vec3 sun_direction(Instant t) {
   const Date tt = tt_date(t);
   double heliocentric[2][3], barycentric[2][3], seen[3];
-  eraEpv00(tt.whole, tt.rest, heliocentric, barycentric);  // the Earth, au and au/day
+  eraEpv00(tt.whole, tt.rest, heliocentric, barycentric);  // of the Earth, au and au/day
   const Vec3 sun = -vector_of(heliocentric[0]);
   const double distance = glm::length(sun);
   const Vec3 direction = sun / distance, velocity = vector_of(barycentric[1]) / light_au_per_day;

@@ -17,7 +17,7 @@ using base::Blame;
 using base::Error;
 
 constexpr double length_slack = 0.01;
-constexpr double end_slack_s = 1.0;  // of STOP_TIME beside the last row
+constexpr double end_slack_s = 1.0;  // tolerance of STOP_TIME against the last row
 constexpr double jump_deg = 10.0, jump_ratio = 10.0;
 constexpr const char* types = "allowed are QUATERNION, EULER_ANGLE and SPIN, with rates or without";
 constexpr const char* say_scalar =
@@ -49,13 +49,13 @@ bool is_body(const std::string& name) {
 
 enum class Kind { Quaternion, Euler, Spin };
 
-// What the metadata say of the rows.
+// Meaning of the rows by the metadata.
 struct Rows {
   Kind kind = Kind::Quaternion;
-  std::size_t numbers = 4;  // of a row that are read
+  std::size_t numbers = 4;  // number of values read per row
   ScalarPlace scalar = ScalarPlace::Last;
   int axis[3] = {0, 0, 0};
-  bool body_is_a = false;  // the rows lead from the body to the frame
+  bool body_is_a = false;  // the rows rotate from the body to the frame
 };
 
 class AemReader {
@@ -208,7 +208,7 @@ class AemReader {
     }
   }
 
-  // Shows where the body's axes point by the first row, read both ways.
+  // Shows the body's axes by both readings of the first row.
   [[noreturn]] void refuse_to_guess(const CcsdsMeta& meta) const {
     std::string both;
     for (std::size_t k = next_; k < message_.lines.size() && both.empty(); ++k) {
@@ -338,7 +338,7 @@ glm::dquat between(const AttitudeSegment& segment, std::size_t before, Instant t
   if (segment.spin.empty()) {
     return glm::normalize(glm::slerp(segment.turns[before], segment.turns[before + 1], share));
   }
-  // Whole turns between the rows are those of the rate.
+  // The rate determines the full revolutions between rows.
   const glm::dvec4 &from = segment.spin[before], &to = segment.spin[before + 1];
   const double expected = 0.5 * (from[3] + to[3]) * span_s;
   const double gone = expected + std::remainder(to[2] - from[2] - expected, 360.0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// CCSDS navigation messages (OEM: CCSDS 502.0-B, AEM: 504.0-B) as lines, whatever they are written
-// in: "KEY = VALUE" text (KVN), XML (505.0-B), or the form of CIC, whose dates are a Modified
-// Julian Date and seconds of the day.
+// Reads CCSDS navigation messages (OEM: CCSDS 502.0-B, AEM: 504.0-B) as lines. Supports "KEY =
+// VALUE" text (KVN), XML (505.0-B), and CIC's form with dates as a Modified Julian Date and seconds
+// of the day.
 #pragma once
 
 #include <filesystem>
@@ -15,32 +15,32 @@
 namespace earthshine::scenes {
 
 struct CcsdsLine {
-  std::string key;    // empty: a row of data; META_START and its like have no value
-  std::string value;  // of a row: its words with single blanks between
+  std::string key;    // empty: a row of data; META_START and similar keys have no value
+  std::string value;  // for a row: its words separated by single blanks
   base::Location where;
 };
 
 struct CcsdsMessage {
   std::string file;
   std::string version;           // "2.0"
-  bool mjd = false;              // CIC: two words for a date
-  std::vector<CcsdsLine> lines;  // in the order of the file, without comments
+  bool mjd = false;              // CIC: a date has two words
+  std::vector<CcsdsLine> lines;  // in file order, without comments
 };
 
-// kind: "OEM" or "AEM". An XML file gives the lines of the same message in KVN; of an AEM it is
-// refused. Throws base::Error (Input) with file and line for text that is neither, for another
-// message or version, and for XML that ends before its elements are closed.
+// kind: "OEM" or "AEM". An XML file gives the same lines as the message in KVN; XML is an error for
+// an AEM. Throws base::Error (Input) with file and line for other text, another message or version,
+// and XML with unclosed elements.
 [[nodiscard]] CcsdsMessage read_ccsds(const std::filesystem::path& path, std::string_view kind,
                                       const base::Location& asked_at);
 
-// The lines of an XML message, after its header's; sets the version.
+// The lines of an XML message after its header; sets the version.
 [[nodiscard]] CcsdsMessage read_ccsds_xml(std::string_view text, const std::string& file,
                                           std::string_view kind);
 
-// The metadata of a segment, by keyword.
+// Metadata of a segment, by keyword.
 class CcsdsMeta {
  public:
-  // known: all keywords that the standard has; the others are collected in `unknown`.
+  // known: all keywords of the standard; others are collected in `unknown`.
   CcsdsMeta(base::Location where, std::vector<std::string_view> known)
       : where_(std::move(where)), known_(std::move(known)) {}
   void add(const CcsdsLine& line, std::vector<std::string>& unknown);
@@ -50,7 +50,7 @@ class CcsdsMeta {
   [[nodiscard]] const CcsdsLine& required(std::string_view key) const;
   [[nodiscard]] TimeSystem time_system() const;
   [[nodiscard]] Instant instant(const CcsdsLine& line, EarthClock clock) const;
-  // A reference frame that is known, or an error with the list.
+  // A known reference frame, or an error with the list.
   [[nodiscard]] static Frame frame(const CcsdsLine& line);
 
  private:
@@ -59,13 +59,13 @@ class CcsdsMeta {
   std::vector<CcsdsLine> lines_;
 };
 
-// A row: its moment and its numbers.
+// A row of data: time and numbers.
 struct CcsdsRow {
   Instant at;
   std::vector<double> numbers;
 };
-// wanted: "X Y Z X_DOT Y_DOT Z_DOT", for messages. Throws for words that are no finite numbers, for
-// fewer than `least` or more than `most` of them, and for what is no date of that time system.
+// wanted: "X Y Z X_DOT Y_DOT Z_DOT", for messages. Throws for words that are not finite numbers,
+// for fewer than `least` or more than `most` numbers, and for an invalid date in this time system.
 [[nodiscard]] CcsdsRow read_row(const CcsdsLine& line, bool mjd, TimeSystem system,
                                 EarthClock clock, std::size_t least, std::size_t most,
                                 std::string_view wanted);

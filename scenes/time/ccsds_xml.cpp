@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of XML that CCSDS messages use: elements, attributes, text, comments. No document types
-// and no entities of a file's own.
+// The subset of XML in CCSDS messages: elements, attributes, text, comments. No document types and
+// no custom entities.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ constexpr std::string_view xml_blank = " \t\r\n";
 constexpr std::size_t most_nested = 32;
 constexpr std::array<std::string_view, 10> state_columns = {
     "EPOCH", "X", "Y", "Z", "X_DOT", "Y_DOT", "Z_DOT", "X_DDOT", "Y_DDOT", "Z_DDOT"};
-// By the number of dots.
+// By order of the derivative (number of dots).
 constexpr std::array<std::string_view, 3> state_units = {"km", "km/s", "km/s**2"};
 
 class XmlReader {
@@ -95,7 +95,7 @@ class XmlReader {
     advance(end + 1);
   }
 
-  // The value of an attribute; empty when it is not there.
+  // The value of an attribute; empty if absent.
   [[nodiscard]] static std::string_view attribute(std::string_view attributes,
                                                   std::string_view name) {
     const std::size_t found = attributes.find(fmt::format("{}=", name));
@@ -157,7 +157,7 @@ class XmlReader {
     }
   }
 
-  // Empty columns before the last filled one give too few words, which the reader of rows names.
+  // An empty column before the last one leaves too few words, which read_row reports.
   void end_state() {
     std::string row;
     for (const std::string& word : state_) {
@@ -168,7 +168,7 @@ class XmlReader {
 
   std::string_view text_, kind_;
   CcsdsMessage message_;
-  std::size_t at_ = 0, skipped_ = 0;  // depth of the element that is skipped; 0: none
+  std::size_t at_ = 0, skipped_ = 0;  // depth of the skipped element; 0: none
   int line_ = 1;
   std::vector<std::string> open_;
   std::string inside_;

@@ -30,12 +30,12 @@ struct LocalFrame {
   }
 };
 
-// From the spacecraft: in a low orbit 0.003 deg from that of the Earth's centre.
+// From the spacecraft: in low orbit 0.003 deg from the direction at the Earth's centre.
 Vec3 sun_from(const State& state, Instant t) {
   return glm::normalize(sun_direction(t) * sun_distance_m(t) - state.position_m);
 }
 
-// Directions in GCRS to the scene.
+// Transforms directions from GCRS to the scene.
 class SceneAxes {
  public:
   SceneAxes(const Mission& mission, const LocalFrame& local, const Vec3& sun, Instant t)
@@ -68,7 +68,7 @@ double angle_between(const Vec3& a, const Vec3& b) {
   return 2.0 * std::atan2(glm::length(a - b), glm::length(a + b));
 }
 
-// How far the Sun's middle is from the Earth's limb, rad: negative behind it.
+// Angle of the Sun's middle above the Earth's limb, rad: negative behind it.
 double above_limb(const Mission& mission, Instant t) {
   const State state = mission.trajectory->at(t);
   const double distance_m = glm::length(state.position_m);

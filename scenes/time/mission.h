@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A spacecraft against time: its trajectory and attitude, and the sky that follows from them.
+// A spacecraft as a function of time: trajectory, attitude, and the resulting sky.
 #pragma once
 
 #include <memory>
@@ -13,54 +13,55 @@
 
 namespace earthshine::scenes {
 
-// [time]: the moments start, start + step, ... to stop.
+// [time]: start, start + step, ... to stop.
 struct TimeSpan {
   Instant start, stop;
-  double step_s = 0.0;  // 0: of one moment
+  double step_s = 0.0;  // 0: a single time
 
   [[nodiscard]] std::size_t count() const;
   [[nodiscard]] Instant at(std::size_t k) const { return start + step_s * static_cast<double>(k); }
 };
 
 struct Mission {
-  TimeSpan time;          // `start` is the moment of the scene's own Sun and Earth
-  bool has_span = false;  // [time] gives more than one moment
+  TimeSpan time;          // `start` is the time of the scene's own Sun and Earth
+  bool has_span = false;  // [time] has more than one time
   std::shared_ptr<const Trajectory> trajectory;
-  std::string attitude = "bay-to-earth";  // of orbit_attitudes or "inertial"; empty: by the history
-  std::string inertial_as = "bay-to-earth";  // kept as it is at time.start
+  std::string attitude = "bay-to-earth";     // of orbit_attitudes or "inertial"; empty: history
+  std::string inertial_as = "bay-to-earth";  // attitude at time.start, then fixed
   std::shared_ptr<const AttitudeHistory> history;
-  glm::dmat3 body_axes{1.0};  // the columns are the history's body axes along the scene's
+  glm::dmat3 body_axes{1.0};  // columns: the history's body axes in the scene
   EarthClock clock;
 };
 
 struct MissionState {
-  Vec3 sun{0.0}, earth{0.0}, north{0.0};  // in the scene, unit
+  Vec3 sun{0.0}, earth{0.0}, north{0.0};  // unit vectors in the scene
   double distance_m = 0.0;                // from the Earth's centre
-  double beta_deg = 0.0;                  // height of the Sun over the orbit's plane
-  double position_deg = 0.0;              // from orbit noon along the motion, 0 to 360
+  double beta_deg = 0.0;                  // elevation of the Sun above the orbital plane
+  double position_deg = 0.0;              // from orbit noon in the direction of motion, 0 to 360
   GroundPoint below;
 };
 
-// Throws base::Error (Input) where trajectory or attitude have nothing.
+// Throws base::Error (Input) outside the trajectory or the attitude history.
 [[nodiscard]] MissionState mission_state(const Mission& mission, Instant t);
 
-// Of the scene; null without.
+// The scene's mission, or null.
 [[nodiscard]] const Mission* mission_of(const Scene& scene);
 
-// Sets the scene's Sun, Earth and circle, and the pole of its albedo by latitude, to that moment of
+// Sets the scene's Sun, Earth, circular orbit and the pole of its albedo by latitude for a time of
 // its mission.
 void move_to_moment(Scene& scene, Instant t);
 
-// When the Earth, a sphere of base::earth_radius_m, hides the Sun; ends outside the span asked for
-// are left out.
+// Times at which the Earth, a sphere of base::earth_radius_m, hides the Sun. Ends outside the
+// requested interval have no value.
 struct EclipseTimes {
   std::optional<Instant> penumbra_begin, umbra_begin, umbra_end, penumbra_end;
 };
-// Between two moments of the trajectory, in order; looked for every 15 s and then halved to 1 ms.
+// Eclipses between two times of the trajectory, in order: sampled every 15 s, then bisected to 1
+// ms.
 [[nodiscard]] std::vector<EclipseTimes> eclipses_between(const Mission& mission, Instant from,
                                                          Instant to, double sun_angular_radius_deg);
 
-// Of the circle with the state's distance.
+// Period of a circular orbit at the present distance.
 [[nodiscard]] double period_at(const Mission& mission, Instant t);
 
 }  // namespace earthshine::scenes

@@ -17,15 +17,14 @@ using base::Blame;
 using base::Error;
 
 constexpr double largest_gap_rad = base::pi / 5.0;
-constexpr double span_slack_s = 1.0;  // of STOP_TIME beside the last state
+constexpr double span_slack_s = 1.0;  // tolerance of STOP_TIME against the last state
 constexpr double farthest_m = 1e9;
 constexpr int most_degree = 31;
 
-// Newton's polynomial through values at nodes, by divided differences; a node that is there twice
-// has value and slope.
+// Newton's interpolating polynomial by divided differences; a double node has value and slope.
 class Newton {
  public:
-  // Nodes in s from the middle of the span, which keeps powers of them small.
+  // Nodes in s relative to the middle of the interval, which keeps their powers small.
   void add(double node, const Vec3& value) { push(node, value, {}, false); }
   void add(double node, const Vec3& value, const Vec3& slope) {
     push(node, value, {}, false);
@@ -99,7 +98,7 @@ State interpolate(const TrajectorySegment& segment, std::size_t before, Instant 
 }
 
 bool holds(const TrajectorySegment& segment, Instant t) {
-  // Dates are read to a tenth of a microsecond.
+  // Dates have a resolution of a tenth of a microsecond.
   return t - segment.first_useful > -1e-6 && t - segment.last_useful < 1e-6;
 }
 
@@ -217,7 +216,7 @@ class OemReader {
                   fmt::format("INTERPOLATION_DEGREE is {}", in_quotes(degree.value)),
                   fmt::format("allowed is a whole number from 1 to {}", most_degree));
     }
-    // A Hermite polynomial has an odd degree: value and slope of each state.
+    // A Hermite polynomial has an odd degree: value and slope at each state.
     segment.degree = static_cast<int>(hermite ? value | 1 : value);
   }
 
@@ -262,7 +261,7 @@ class OemReader {
     const auto& n = row.numbers;
     const State state{1e3 * Vec3(n[0], n[1], n[2]), 1e3 * Vec3(n[3], n[4], n[5])};
     const double distance_m = glm::length(state.position_m);
-    // The least radius of the Earth is 6357 km.
+    // The Earth's smallest radius is 6357 km.
     if (!(distance_m > 6.35e6 && distance_m < farthest_m)) {
       throw Error(Blame::Input, line.where,
                   fmt::format("a state {:.6g} km from the Earth's centre", distance_m / 1e3),

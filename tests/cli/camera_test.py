@@ -24,7 +24,7 @@ class Cameras(program.Case):
     def test_look_at_is_the_position(self):
         where = f"scene.toml:{CAMERA_LINE + 1}:1"
         self.broken("look_at = [2, 2, 1.5]", "look_at = [0.4, 0.5, 0.6]", where, "own position")
-        # A thousandth of a millimetre at 100 km is pure rounding.
+        # A thousandth of a millimetre at 100 km is only rounding.
         self.broken("position = [0.4, 0.5, 0.6]\nlook_at = [2, 2, 1.5]",
                     "position = [100000, 0, 0]\nlook_at = [100000.000001, 0, 0]", where, "own position")
 

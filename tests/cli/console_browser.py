@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The lighting console in headless Chromium (console/check.mjs) against the program's own pictures: clean ones of random
-lamp settings by `relight`, monitors of every camera that ships by `degrade` without noise, targets by `study`.
+"""The lighting console in headless Chromium (console/check.mjs) against the program's own pictures: clean pictures with random
+lamp settings by `relight`, monitors of all built-in cameras by `degrade` without noise, targets by `study`.
 
 usage: console_browser.py PROGRAM [OUT]    screenshots go to OUT
 
-Exit code 77 where there is no browser, no Node.js or no report/node_modules.
+Exit code 77 without a browser, Node.js or report/node_modules.
 """
 import base64
 import json
@@ -46,7 +46,7 @@ class Bench:
 
 
 def setting(draw):
-    """A factor for each light: off, dimmed, or coloured. As the page's fragment and as --set."""
+    """A factor for each light: off, dimmed, or coloured. In the form of the page's fragment and of --set."""
     fragment, calls = [], []
     for light in LIGHTS:
         kind = draw.random()
@@ -67,7 +67,7 @@ def clean(bench, draw, count):
             fragment, calls = setting(draw)
             bench.run("relight", f"layers/{camera}.exr", *calls, "-o", "r.exr", "--png", "r.png", "-q")
             pictures.append({"text": f"camera={camera}&{fragment}", "sums": bench.planes("r.exr", "RGB"), "png": bench.png("r.png")})
-    # A tint's hue by sRGB: half of full scale, 0x80, is 0.2159 of the light.
+    # Hue of a tint in sRGB: half of full scale, 0x80, is 0.2159 in linear light.
     bench.run("relight", "layers/A.exr", "--set", "left=1,0.21586050011,0", "-o", "r.exr", "--png", "r.png", "-q")
     pictures.append({"text": "camera=A&t.left=%23ff8000", "sums": bench.planes("r.exr", "RGB"), "png": bench.png("r.png")})
     return pictures
@@ -103,7 +103,7 @@ def main():
         return SKIPPED
     with tempfile.TemporaryDirectory() as name:
         bench, draw = Bench(program, pathlib.Path(name)), random.Random(SEED)
-        # The shipped cameras come with a monitor each; the bay's small one would take its place.
+        # Each built-in camera has its own monitor; the scene's small one would replace it.
         (bench.folder / "bay.toml").write_text(tiny_bay.BAY.replace(tiny_bay.SMALL_MONITOR, ""), encoding="utf-8")
         bench.run("console", "bay.toml", "-o", "console.html", "--layers", "layers", "-q")
         words = ["camera=A", "camera=A&l.left=0.5&t.right=%23ff8000", "camera=A&view=monitor&c.iris=fixed&c.f_number=8&m.gamma=2", "camera=A&white=50"]

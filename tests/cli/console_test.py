@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""console: the page of a scene, and its layers beside those that `--layers` writes."""
+"""console: the page of a scene, and its layers against the EXR layers of `--layers`."""
 import base64
 import json
 import re
@@ -18,7 +18,7 @@ def half_of_ordered(number):
 
 
 def unpacked(data, columns, count, at):
-    """A plane of numbers from its residuals (MED of ISO 14495-1), low bytes before high bytes."""
+    """Decodes a plane of numbers from its residuals (MED of ISO 14495-1), low bytes before high bytes."""
     plane = []
     for i in range(count):
         left = plane[i - 1] if i % columns else None
@@ -35,7 +35,7 @@ def unpacked(data, columns, count, at):
 
 class Console(tiny_bay.Case):
     def page(self, path):
-        """The data of a page, and the bytes of an element of it."""
+        """The data of a page, and the bytes of one of its elements."""
         html = (self.folder / path).read_text(encoding="utf-8")
         data = json.loads(re.search(r'id="data">(.*?)</script>', html, re.S).group(1))
         return html, data, lambda name: zlib.decompress(base64.b64decode(re.search(f'id="{name}">(.*?)</script>', html).group(1)))
@@ -57,8 +57,9 @@ class Console(tiny_bay.Case):
             largest = max(abs(v) for colour in "RGB" for v in layers[f"light_{name}.{colour}"])
             for colour, plane in planes.items():
                 for number, value in zip(plane, layers[f"light_{name}.{colour}"]):
-                    # To nearest with 11 bits: half a unit of the last is 2^-12 to 2^-11 of the value; below 2^-14 of
-                    # the half's unit, 2^-28 of the largest, steps are even.
+                    # Rounding to 11 bits: half a unit of the last place is 2^-12 to 2^-11 of the
+                    # value. Below 2^-14 of the half's unit, 2^-28 of the largest, steps are
+                    # uniform.
                     self.assertLessEqual(abs(half_of_ordered(number) * 2.0**layer["exponent"] - value), max(2**-11 * abs(value), 2**-38 * largest))
 
     def test_the_same_call_gives_the_same_page_and_draws_nothing_again(self):

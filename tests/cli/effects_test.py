@@ -28,8 +28,8 @@ material = "sheet"
 BALL = program.BALL
 PLAIN = BALL.replace("specular = 0.3\nshininess = 20\n", "")
 
-# Scenes in which an effect has nothing to do: additional text for the scene, placed first so that
-# numbers of lamps and materials shift, and options of the call.
+# Scenes in which an effect has nothing to do: additional text for the scene, inserted first so that
+# the indices of lamps and materials shift, and options of the call.
 IDLE = {
     "a material that nothing wears, with everything": (UNUSED + "diffuse = 0.1\nspecular = 0.1\nshininess = 5\nmirror = 0.2\ntransmit = 0.2\nior = 1.5\nemit = 4\n", []),
     "emit 0": ("", ["--set", "material.floor.emit=0"]),

@@ -2,10 +2,9 @@
 """Failing system calls in every command that writes: no file is torn, every failure is reported,
 and the next run writes the bytes of an undisturbed one.
 
-Also: the process is killed before any of the calls that change files, which are all the moments
-that files can distinguish; the power fails at the same time, which drops data that was not flushed
-and names in folders that were not flushed; file systems without links, locks, or renaming onto an
-existing file; clocks that jump.
+Also: the process is killed before any of the calls that change files, which are all the states that
+files can be in; a power failure at the same time, which drops unflushed data and names in unflushed
+folders; file systems without links, locks, or renaming onto an existing file; clocks that jump.
 
 Tests some calls of each kind. EARTHSHINE_FAULTS=all tests all calls and prints a table (an hour).
 EARTHSHINE_FAULTS=NAME does so for one command or one column of the table; the slowest command,

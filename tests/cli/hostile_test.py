@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files made to use memory or time, or to read other files: refused with one line, within the
+"""Files designed to use memory or time, or to read other files: refused with one line, within the
 allowed memory. docs/reliability.md has them as a table. Oversized pictures, meshes and geometry:
 memory_test.py. Links in HDF5: tests/base/files/hdf5_file_test.cpp."""
 import base64

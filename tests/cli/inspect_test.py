@@ -76,7 +76,7 @@ class Inspect(program.Case):
 
     def test_library_scenes_are_sound(self):
         scenes = sorted(path for path in (program.TOP / "scenes" / "library").glob("*/*.toml")
-                        if path.parent.name != "materials")  # to be included, no scenes
+                        if path.parent.name != "materials")  # materials to be included, not scenes
         self.assertGreaterEqual(len(scenes), 4)
         for scene in scenes:
             report = self.json("inspect", scene)

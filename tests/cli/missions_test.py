@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Missions as a user meets them: the scripts that write trajectories, inspect, a study along time, what is refused."""
+"""Missions for users: scripts that write trajectories, inspect, a study along time, and errors."""
 import csv
 import math
 import subprocess
@@ -33,11 +33,13 @@ class Missions(program.Case):
     def test_inspect_shows_where_it_is(self):
         facts = self.json("inspect", "bay.toml")["mission"]
         self.assertEqual((facts["frame"], facts["time_system"], facts["moments"]), ("EME2000", "UTC", 7))
-        # At the node, on the equator; 425 km over 6371 km, 417.863 km over the equator of WGS 84.
+        # At the node, on the equator; 425 km above 6371 km is 417.863 km above the equator of WGS
+        # 84.
         self.assertAlmostEqual(facts["latitude_deg"], 0.0, delta=0.2)  # precession since 2000
         self.assertAlmostEqual(facts["height_m"], 417863, delta=200)
-        # Greenwich's mean sidereal time is 18.697375 h + 24.0657098244 h * 9556 days since J2000 = 22.6205 h, or
-        # 339.307 deg; along the equator the node has gone on by precession, 46.1" a year in 26.16 years.
+        # Greenwich mean sidereal time is 18.697375 h + 24.0657098244 h * 9556 days since J2000 =
+        # 22.6205 h, or 339.307 deg; along the equator precession has moved the node by 46.1" a year
+        # in 26.16 years.
         self.assertAlmostEqual(facts["longitude_deg"], 300 - 339.307 + 46.1 * 26.16 / 3600, delta=0.02)
         period = 2 * math.pi * math.sqrt(6796e3 ** 3 / 3.986004418e14)
         self.assertAlmostEqual(facts["period_s"], period, delta=0.01)
@@ -50,7 +52,7 @@ class Missions(program.Case):
         self.assertEqual([c["utc"] for c in conditions],
                          [f"2026-03-01T{12 + k // 4}:{15 * (k % 4):02}:00Z" for k in range(7)])
         self.assertEqual([c["time_s"] for c in conditions], [900 * k for k in range(7)])
-        # Even steps of a circle, on from turn to turn.
+        # Equal steps of a circle, increasing beyond one revolution.
         step = 900 / (2 * math.pi * math.sqrt(6796e3 ** 3 / 3.986004418e14)) * 360
         for k, condition in enumerate(conditions):
             self.assertAlmostEqual(condition["position_deg"], conditions[0]["position_deg"] + step * k, delta=0.1)
@@ -92,8 +94,9 @@ class Missions(program.Case):
         facts = self.json("inspect", "bay.toml", "--set", "time.start=2008-09-20T12:25:40", "--set",
                           "time.stop=2008-09-20T14:25:40")["mission"]
         self.assertEqual((facts["object"], facts["frame"], facts["tai_minus_utc_s"]), ("ISS (ZARYA)", "TEME", 33))
-        # Latitude asin(sin i sin u) with the argument of latitude u = 130.536 + 325.029 deg of the epoch, which is
-        # the start: 51.6416 deg and 95.565 deg give 51.3 deg; the ellipsoid's is 0.19 deg more.
+        # Latitude asin(sin i sin u) with the argument of latitude u = 130.536 + 325.029 deg at the
+        # epoch, which is the start: 51.6416 deg and 95.565 deg give 51.3 deg; the geodetic latitude
+        # is 0.19 deg more.
         self.assertAlmostEqual(facts["latitude_deg"], 51.5, delta=0.2)
         old = subprocess.run([python, SCRIPTS / "tle_to_oem.py", "iss.tle", "-o", "x.oem", "--start", "2026-03-01T12:00:00",
                               "--stop", "2026-03-01T13:00:00"], cwd=self.folder, capture_output=True, text=True, check=False)

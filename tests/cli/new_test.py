@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""new: a scene file that renders as it stands; manual and completion: every command and option of the help."""
+"""new: a scene file that renders without changes; manual and completion: every command and option of the help."""
 import re
 import subprocess
 import unittest
@@ -7,7 +7,7 @@ import unittest
 import exr
 import program
 
-# Two objects; the second one's material is defined nowhere.
+# Two objects; the material of the second one is undefined.
 OBJ = """mtllib two.mtl
 o table
 usemtl wood
@@ -44,7 +44,7 @@ class New(program.Case):
         self.assertEqual([(one["name"], one["polygons"]) for one in found["objects"]], [("table", 1), ("shade", 1)])
         layers = self.picture_of("mine.toml")
         self.assertGreater(max(layers["G"]), 0)
-        # The corner pixels see past all objects: they are in the picture as a whole.
+        # The corner pixels miss all objects: the objects are completely in the picture.
         corners = [layers["G"][k] for k in (0, 15, 240, 255)]
         self.assertEqual(corners, [0, 0, 0, 0])
 

@@ -167,7 +167,7 @@ class Case(unittest.TestCase):
         return message
 
     def work_memory(self, scene, mib):
-        """--max-memory that leaves so much for the work, beyond plan's figure for the program."""
+        """--max-memory that leaves this much for the work, beyond plan's figure for the program."""
         of_program = self.json("plan", scene)["memory"]["parts_mib"]["program"]
         return "--max-memory", f"{of_program + mib:.2f}MiB"
 

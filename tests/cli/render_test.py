@@ -79,7 +79,7 @@ class Render(program.Case):
                 self.assertLessEqual(abs(whole - lamp - sun), 1e-6 * max(whole, 1e-3))
 
     def test_a_lamp_switched_off_leaves_the_other_layer(self):
-        same = ("--set", "quality.denoise=false")  # else denoising follows the noise of all light together
+        same = ("--set", "quality.denoise=false")  # denoising depends on the noise of all light
         both = self.render("ball.toml", "--per-light", *same)[3]
         sun = self.render("ball.toml", "--set", "light.lamp.intensity=0", *same)[3]
         for c in "RGB":

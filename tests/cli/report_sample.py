@@ -180,7 +180,7 @@ def study(positions=24, cameras=2, targets=3, lamps=2):
 
 
 def two_scenes(study):
-    """The same once more in another scene, with cameras of the same names."""
+    """The results again in another scene, with cameras of the same names."""
     study["scenes"].append(study["scenes"][0] | {"id": "s1", "name": "open doors"})
     study["cameras"] += [camera | {"scene": "s1"} for camera in study["cameras"]]
     again = {condition["id"]: condition | {"id": "d" + condition["id"], "scene": "s1"} for condition in study["conditions"]}

@@ -89,7 +89,8 @@ class Content(Report):
                      study["answers"][0]["text"], "Camera B by night, clean and CCTV", "the tail stands in front",
                      "288 results", "bay lamps on", "Eclipse: 135° to 225°. Penumbra: 120°, 240°."):
             self.assertIn(text, page.text)
-        # Three pictures, one of them by two exposures; each is there once, however many pairs show it.
+        # Three pictures, one of them with two exposures; each is embedded once for any number of
+        # pairs.
         self.assertEqual(len(page.all("img")), 3 + 1 + 2 * len(study["thumbnails"]))
         self.assertTrue(all(image["alt"] for image in page.all("img")))
         rows = [row for row in page.all("tr") if re.fullmatch(r"r\d+", row.get("id", ""))]
@@ -259,7 +260,7 @@ class Studies(Report):
 
 
 class Reading(Report):
-    """What a planner reads off the page."""
+    """Information for a planner on the page."""
 
     def page(self, results=None):
         return Page(self.study(results, "--plain"))
@@ -271,8 +272,9 @@ class Reading(Report):
                   "altitude 400 km, one turn in 92.2 min", "6°. The Earth hides the Sun at 121° to 239°",
                   "the bay faces the Earth, nose forward")
         self.assertLess(page.text.index("the bay faces the Earth"), page.text.index("Best cameras"))
-        # The Sun is at the left, the motion counterclockwise: on a circle of 62 about (180, 108) noon is at (118, 108) and
-        # 90 deg at (180, 170), y downward. An axis toward the Earth, 26 long, goes right there and up here.
+        # The Sun is at the left, the motion counterclockwise: on a circle of 62 about (180, 108)
+        # noon is at (118, 108) and 90 deg at (180, 170), y downward. An axis of length 26 toward
+        # the Earth points right at noon and up at 90 deg.
         self.says(text, 'class="bay" d="M118.0 108.0l26.0 0.0"', 'class="bay" d="M180.0 170.0l0.0 -26.0"')
         self.assertEqual(text.count('class="bay"'), 4)
         study = report_sample.study(positions=4)
@@ -293,10 +295,10 @@ class Reading(Report):
             study["results"] = [entry | {"verdict": verdict, "johnson_cycles": cycles, "visible_fraction": visible, "why": "dim"}]
             return self.page(study).text
         self.says(shown("not-seen", weber=-0.23, threshold=0.34), "contrast on the monitor 0.23, threshold 0.34")
-        # Digits enough to tell it from its threshold.
+        # Enough digits to distinguish it from its threshold.
         self.says(shown("not-seen", weber=0.0652, threshold=0.0654), "contrast on the monitor 0.0652, threshold 0.0654")
         self.says(shown("not-seen", snr_d=1.4), "signal to noise 1.4, threshold 2.8")
-        # The lesser of the two: 0.5 of the threshold of contrast, 0.4 of that of noise.
+        # The smaller ratio: 0.5 of the threshold of contrast, 0.4 of the threshold of noise.
         self.says(shown("not-seen", weber=0.05, snr_d=1.12), "signal to noise 1.1, threshold 2.8")
         # Johnson: 1 cycle for detection, 4 for recognition, 6.4 for identification.
         for verdict, needed in (("doubtful", "1"), ("detected", "4"), ("recognised", "6.4")):
@@ -305,7 +307,7 @@ class Reading(Report):
 
     def test_an_answer_names_camera_and_condition(self):
         text = self.page().text
-        # 255 to 465 deg goes over noon: angles are from 0 to below 360.
+        # 255 to 465 deg passes noon: angles are in [0, 360).
         self.says(text, "camera B", "detected at 255° to 105°, 200° to 210°",
                   "this camera needs 12 % of these lamps at 180°, where it is darkest")
         study = report_sample.study(positions=4)

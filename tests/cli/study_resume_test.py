@@ -33,7 +33,7 @@ class Resume(Case):
         begin = time.monotonic()
         self.done(*self.CALL, "-o", "whole")
         took = time.monotonic() - begin
-        # Files of a write that was cut short, and of one that is still running.
+        # Files of an incomplete write, and of a write in progress.
         points = self.folder / "o" / "points"
         points.mkdir(parents=True)
         gone = self.started("--version")
@@ -138,7 +138,7 @@ class Resume(Case):
             self.assertEqual(list(self.folder.glob("o/points/solution-*.h5")), [])
 
     def leaves_at_once(self, run, after):
-        """Ctrl-C, after so many more CPU seconds, ends the run within 1.5 CPU seconds."""
+        """Ctrl-C, after this many more CPU seconds, ends the run within 1.5 CPU seconds."""
         taken = self.cpu_seconds(run) + after
         while run.poll() is None and self.cpu_seconds(run) < taken:
             time.sleep(0.01)

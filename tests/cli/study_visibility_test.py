@@ -67,7 +67,7 @@ class Orbit(Case):
             # Groups below a hundredth are omitted, and each figure has four digits.
             self.assertAlmostEqual(sum(result["light_by"].values()) / result["luminance"], 1, delta=0.03)
             self.assertLessEqual(result["luminance_error"], result["luminance_bound"])
-        # Each part of a result has its columns, also if it does not exist.
+        # Each part of a result has its columns, even if it is missing.
         columns = json.loads((self.folder / "o" / "study.json").read_text(encoding="utf-8"))["results"]["columns"]
         for column in ("probability.identify", "signal.mean", "monitor.threshold", "eye.probability.detect"):
             self.assertEqual(columns.count(column), 1, column)
@@ -113,10 +113,11 @@ class Orbit(Case):
             self.assertLessEqual(begin, end)
 
     def test_the_orbit_is_in_the_results(self):
-        # The bay to the Sun: its axis is the Sun's direction, cos b cos p along the zenith, -cos b sin p along the motion
-        # and sin b along the normal (scenes/sky/orbit.h). The Sun's centre is an angle t from the Earth's where
-        # cos t = -cos b cos p; with radii E (sin E = 6371 / 6796) and S = 0.2666 deg the umbra has t < E - S and the
-        # penumbra t < E + S, which differ by 0.63 deg.
+        # The bay toward the Sun: its axis is the Sun's direction, cos b cos p along the zenith,
+        # -cos b sin p along the motion and sin b along the normal (scenes/sky/orbit.h). The Sun's
+        # centre is at the angle t from the Earth's, cos t = -cos b cos p. With radii E (sin E =
+        # 6371 / 6796) and S = 0.2666 deg the umbra has t < E - S and the penumbra t < E + S, which
+        # differ by 0.63 deg.
         study = self.printed("study", "orbit", "bay.toml", "-o", "o", "--at", "0", "--camera", "B", "--set", "orbit.beta_deg=30",
                              "--set", 'orbit.attitude="bay-to-sun"')
         orbit = study["scenes"][0]["orbit"]
@@ -199,7 +200,7 @@ class Run(Case):
                          [("s0", "A"), ("s0", "B"), ("s1", "A"), ("s1", "B")])
         self.assertEqual([figure["name"] for figure in study["figures"]], ["noon", "few lights", "night"])
         self.assertEqual(len(study["results"]), 2 * 4 * 2)
-        # Both have one name: their files tell them apart.
+        # Both have the same name: their files distinguish them.
         text = self.done("study", "run", "two.toml", "-o", "o")
         self.says(text, "in tiny bay (bay.toml):", "in tiny bay (dim.toml):", "camera A in tiny bay (dim.toml): ")
         self.assertNotRegex(text, r"\bs[01] ")

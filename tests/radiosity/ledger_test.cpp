@@ -28,7 +28,7 @@ Solution solve_at(const scenes::Scene& scene, double edge_m) {
   return tests::Prepared(scene).solve(options);
 }
 
-// given = out at once + lost at once + emitted + landed, and these = absorbed + escaped besides.
+// given = escaped at once + lost at once + emitted + landed; emitted + landed = absorbed + escaped.
 void expect_closed(const GroupLedger& line) {
   for (int c = 0; c < 3; ++c) {
     const double at_once = line.escaped_at_once_lm[c] + line.lost_at_once_lm[c];
@@ -38,9 +38,9 @@ void expect_closed(const GroupLedger& line) {
   }
 }
 
-// A lamp in the middle above a plate at half its side: the plate is one of a cube's six faces, so
-// that it takes a sixth of 4 pi I. Of 65536 rays the share of those that miss has a standard error
-// of sqrt(5/36 / 65536) = 0.0015.
+// A lamp above the middle of a plate at half its side: the plate is one of a cube's six faces and
+// receives a sixth of 4 pi I. With 65536 rays the share of misses has a standard error of sqrt(5/36
+// / 65536) = 0.0015.
 constexpr double flux_lm = 400.0 * base::pi, sixth_error_lm = 4 * 0.0015 * flux_lm;
 
 TEST(Ledger, LampOverAPlateGivesWhatLandsAndWhatEscapesAtOnce) {
@@ -57,8 +57,8 @@ TEST(Ledger, LampOverAPlateGivesWhatLandsAndWhatEscapesAtOnce) {
   expect_closed(line);
 }
 
-// With 4096 rays, as for pictures, the standard error is four times that, and the balance as exact.
-// The lamp casts 61 440 rays fewer, and nothing else does.
+// With 4096 rays, as for pictures, the standard error is four times larger, and the balance equally
+// exact. The lamp casts 61 440 fewer rays; nothing else changes.
 TEST(Ledger, FewerRaysFromALampAreRougherAndCloseAsWell) {
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
@@ -86,7 +86,7 @@ TEST(Ledger, LampUnderABlackBackLosesASixthThere) {
 }
 
 TEST(Ledger, SkyAndSurfacesCarriedByFGiveWhatLandsAndWhatTheyEmit) {
-  // The Sun 60 degrees off a plate of 1 m2; another of 1 m2 beside it that shines with 10 lm/m2.
+  // The Sun at 60 degrees to a plate of 1 m2; another one of 1 m2 beside it that emits 10 lm/m2.
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
   scenes::Material shining = tests::grey(0.0, 10.0);
@@ -106,8 +106,8 @@ TEST(Ledger, SkyAndSurfacesCarriedByFGiveWhatLandsAndWhatTheyEmit) {
 }
 
 TEST(Ledger, ManyLampsOfTwoColoursInAClosedRoomLandTheFluxOfEachChannel) {
-  // 40 lamps are drawn from by chance, so that the samples alone have red and blue wrong by some
-  // per mille. Nothing escapes: each channel lands as it was emitted, 20 lamps of 4 pi I.
+  // 40 lamps are selected randomly, so that red and blue of the samples are wrong by some per
+  // mille. Nothing escapes: each channel lands as emitted, 20 lamps of 4 pi I.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.room({m, m, m, m, m, m});
@@ -125,8 +125,8 @@ TEST(Ledger, ManyLampsOfTwoColoursInAClosedRoomLandTheFluxOfEachChannel) {
   expect_closed(line);
 }
 
-// A closed cube of 1 m: whatever the lamp, its flux lands, and nothing else does. Spots of half a
-// degree and less shine on a few mm of a wall that no point of a patch of 0.25 m meets.
+// A closed cube of 1 m: the flux of every lamp lands exactly. Spots of half a degree and less light
+// a few mm of a wall that no sample point of a patch of 0.25 m hits.
 TEST(Ledger, EveryLampInAClosedRoomGivesAndLandsItsFlux) {
   std::vector<scenes::Lamp> lamps;
   for (const double field_deg : {0.1, 0.5, 1.0, 2.0, 5.0, 60.0}) {
@@ -172,8 +172,8 @@ TEST(Ledger, EveryLampInAClosedRoomGivesAndLandsItsFlux) {
   }
 }
 
-// A luminaire's closed housing that stands on a floor: the lamp in it lights nothing, and all of its
-// flux ends on black backs, on the floor under the housing too.
+// A luminaire's closed housing on a floor: the lamp inside lights nothing, and all of its flux ends
+// on black backs, including the floor under the housing.
 TEST(Ledger, ALampInAHousingOnAFloorLosesAllOfItsFlux) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
@@ -193,7 +193,8 @@ TEST(Ledger, ALampInAHousingOnAFloorLosesAllOfItsFlux) {
   EXPECT_LT(line.imbalance, 1e-9);
 }
 
-// A spot of 0.02 degrees on patches that no beam has cut: no sample finds its light, and the ledger says so.
+// A spot of 0.02 degrees on patches that were not refined for beams: no sample finds its light, and
+// the ledger reports it.
 TEST(Ledger, FluxThatNoSampleFindsIsAnImbalance) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));

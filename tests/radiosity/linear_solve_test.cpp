@@ -50,7 +50,7 @@ Eigen::MatrixXd dense(const FormFactors& f) {
 }
 
 TEST(LinearSolve, ProductOfAnyNumberOfColumnsIsTheMatrixTimesEach) {
-  // 33 columns go beyond what one pass over the matrix takes.
+  // 33 columns exceed one pass over the matrix.
   const Room room = closed_room(0.25);
   const Eigen::MatrixXd f = dense(room.factors);
   const auto n = static_cast<std::size_t>(f.rows());
@@ -68,8 +68,8 @@ TEST(LinearSolve, ProductOfAnyNumberOfColumnsIsTheMatrixTimesEach) {
 }
 
 TEST(LinearSolve, ToleranceBoundsTheErrorAgainstADirectSolve) {
-  // Reflectances from 0 to 0.999999 side by side, and all of them 0.999999, where a relative
-  // residual of 1e-8 would leave an error of up to 1e-8 / (1 - rho) = 1 %.
+  // Reflectances from 0 to 0.999999 mixed, and all equal to 0.999999, where a relative residual of
+  // 1e-8 would leave an error of up to 1e-8 / (1 - rho) = 1 %.
   const Room room = closed_room(0.25);
   const Eigen::MatrixXd f = dense(room.factors);
   const Eigen::Index n = f.rows();
@@ -101,7 +101,7 @@ TEST(LinearSolve, JointSolveOfManyColumnsLeavesEveryColumnWithinTolerance) {
   std::vector<double> source(n * columns, 0.0), rho(n * columns);
   for (std::size_t i = 0; i < n; ++i) {
     source[i * columns] = i == 0 ? 1e9 : 0.0;  // a bright spot,
-    source[i * columns + 1] = 1e-9;            // a faint haze, and nothing
+    source[i * columns + 1] = 1e-9;            // a faint uniform light, and nothing
     for (std::size_t c = 0; c < columns; ++c) rho[i * columns + c] = 0.3 + 0.3 * double(c);
   }
   const LinearSolve result = solve_linear(room.factors, source, rho, columns, 1e-10);

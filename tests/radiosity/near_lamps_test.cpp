@@ -15,7 +15,7 @@ namespace {
 
 constexpr double half_edge = 1.0, start_edge = 0.25;
 
-// A square floor with a lamp of 1000 lm at that height over its centre.
+// A square floor with a lamp of 1000 lm at this height over its centre.
 scenes::Scene floor_under_lamp(double height, scenes::LampKind kind = scenes::LampKind::Point) {
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 2.0 * half_edge, 0.0, true);
@@ -37,8 +37,8 @@ scenes::Scene floor_under_lamp(double height, scenes::LampKind kind = scenes::La
 
 Patches cut(const scenes::Scene& scene) { return subdivide_near_lamps(scene, start_edge); }
 
-// A spot of half a degree 1 m over the floor lights 8.7 mm of it: by area pi (4.4 mm)^2, smooth
-// toward its border, so that a patch of 1/32 of the flux is about 1.4 mm wide.
+// A spot of half a degree 1 m over the floor lights 8.7 mm of it: area pi (4.4 mm)^2, smooth toward
+// its border, so that a patch with 1/32 of the flux is about 1.4 mm wide.
 TEST(NearLamps, NoPatchHoldsMuchOfANarrowBeam) {
   for (const double field_deg : {0.1, 0.5, 5.0}) {
     scenes::Scene scene = floor_under_lamp(1.0, scenes::LampKind::Spot);
@@ -70,7 +70,7 @@ TEST(NearLamps, NoPatchIsLongerThanAQuarterOfItsDistance) {
     EXPECT_NEAR(area, 4.0 * half_edge * half_edge, 1e-12);
     for (std::uint32_t i = 0; i < patches.count(); ++i) {
       const CellSize size = cell_size(patches, i);
-      // To the nearest of many points of the patch: not less than to the patch.
+      // Distance to the nearest of many points of the patch: at least the distance to the patch.
       double distance = 1e9;
       for (int k = 0; k < 81; ++k) {
         const Vec3 point = patches.point(i, k % 9 / 8.0, k / 9 / 8.0);
@@ -78,8 +78,8 @@ TEST(NearLamps, NoPatchIsLongerThanAQuarterOfItsDistance) {
       }
       EXPECT_LE(std::max(size.s_m, size.t_m), distance / 4.0);
     }
-    // Every halving of scale takes as many, far fewer than an even cut: the ring from r to 2 r has
-    // 3 pi r^2, and halving stops above r / 8, so that 192 pi = 603 fit.
+    // Each halving of scale adds the same number, far fewer than uniform patches: the ring from r
+    // to 2 r has 3 pi r^2, and halving stops above r / 8, so that 192 pi = 603 fit.
     EXPECT_LT(patches.count(), 64U + 603U * std::size_t(std::log2(start_edge / height) + 3.0));
   }
 }
@@ -110,11 +110,11 @@ TEST(NearLamps, OnlyWhatTheyShineAtIsCut) {
   const std::size_t even = subdivide(floor_under_lamp(1.0), start_edge).count();
   EXPECT_EQ(cut(floor_under_lamp(1.0)).count(), even);
   EXPECT_EQ(cut(floor_under_lamp(-1e-3)).count(), even);  // behind a black back
-  EXPECT_EQ(cut(floor_under_lamp(1e-3, scenes::LampKind::Spot)).count(), even);  // looks away
+  EXPECT_EQ(cut(floor_under_lamp(1e-3, scenes::LampKind::Spot)).count(), even);  // directed away
 }
 
-// Beside a lamp of 0.2 m the light changes no faster for being nearer: nothing longer than 0.05 m
-// is left, and nothing as short is halved.
+// Near a lamp of radius 0.2 m the light varies no faster than over its size: no patch is longer
+// than 0.05 m, and none so short is halved.
 TEST(NearLamps, NothingIsCutForLessThanTheSizeOfTheLamp) {
   scenes::Scene scene = floor_under_lamp(1e-3, scenes::LampKind::Disk);
   scene.lamps[0].radius_m = 0.2;
@@ -129,8 +129,8 @@ TEST(NearLamps, NothingIsCutForLessThanTheSizeOfTheLamp) {
   EXPECT_GT(shortest, 0.025);
 }
 
-// A square of half edge a is seen from height h over its centre under the solid angle
-// 4 atan(a^2 / (h sqrt(2 a^2 + h^2))): that share of 1000 lm / 4 pi lands.
+// The solid angle of a square of half edge a from height h over its centre is 4 atan(a^2 / (h
+// sqrt(2 a^2 + h^2))): this share of 1000 lm / 4 pi lands.
 TEST(NearLamps, HalfOfTheirLightLands) {
   for (const double height : {0.1, 1e-3, 1e-4, 5e-5}) {
     const scenes::Scene scene = floor_under_lamp(height);
@@ -145,7 +145,7 @@ TEST(NearLamps, HalfOfTheirLightLands) {
     EXPECT_NEAR(flux.landed_lm.y, 1000.0 * solid_angle / (4.0 * base::pi),
                 4.0 * 1000.0 * flux.share_std_error)
         << height;
-    EXPECT_NEAR(flux.scale, 1.0, 0.01) << height;  // the patches' own samples say so
+    EXPECT_NEAR(flux.scale, 1.0, 0.01) << height;  // by the patches' own samples
   }
 }
 

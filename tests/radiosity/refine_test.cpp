@@ -36,7 +36,7 @@ scenes::Lamp lamp_at(const Vec3& position, double intensity_cd) {
   return lamp;
 }
 
-// A plate of 1 m in the Sun under a black plate of 0.4 m, whose shadow lies askew on it.
+// A plate of 1 m in the Sun under a black plate of 0.4 m, which casts an oblique shadow on it.
 scenes::Scene shadowed_plate() {
   tests::SceneBuilder builder;
   const std::uint32_t white = builder.material(tests::grey(0.5));
@@ -47,7 +47,7 @@ scenes::Scene shadowed_plate() {
   return builder.scene;
 }
 
-// Mean over the plate of (B - true B)^2 / mean of B^2, B being 1 in the Sun and 0 in the shadow.
+// Mean over the plate of (B - true B)^2 / mean of B^2; B is 1 in the Sun and 0 in the shadow.
 double relative_error(const tests::Prepared& prepared, const Solution& solution) {
   constexpr int n = 400;
   const scenes::Scene& scene = prepared.scene;
@@ -66,7 +66,8 @@ double relative_error(const tests::Prepared& prepared, const Solution& solution)
 }
 
 TEST(Refine, AShadowsEdgeNeedsAThirdOfTheEvenPatchesAndLess) {
-  // The error of even patches of edge h falls as sqrt(h), that of cells along the edge as 1 / N.
+  // The error of uniform patches of edge h decreases as sqrt(h), with cells along the shadow's edge
+  // as 1 / N.
   const scenes::Scene scene = shadowed_plate();
   const tests::Prepared prepared(scene);
   SolveOptions even = refining(1.0, 0);
@@ -83,7 +84,7 @@ TEST(Refine, TheEstimateIsTheErrorOfShadowEdgesWithinAFifth) {
   const scenes::Scene scene = shadowed_plate();
   const tests::Prepared prepared(scene);
   const Solution refined = prepared.solve(refining(0.25, 400));
-  // The relative error is one of all radiosity; the blocker has none, and its area drops out.
+  // The relative error refers to all radiosity; the blocker has none, and its area cancels.
   EXPECT_NEAR(refined.report.rounds.back().error / relative_error(prepared, refined), 1.0, 0.2);
 }
 
@@ -119,7 +120,7 @@ TEST(Refine, TheBudgetHoldsForSheetsToo) {
 }
 
 TEST(Refine, EvenLightIsLeftAloneHoweverFewTheRays) {
-  // M = 1 - rho in a closed room: B = 1 on every wall, whatever they reflect.
+  // M = 1 - rho in a closed room: B = 1 on every wall for any reflectance.
   tests::SceneBuilder builder;
   std::array<std::uint32_t, 6> walls{};
   for (std::size_t k = 0; k < 6; ++k) {
@@ -136,7 +137,7 @@ TEST(Refine, EvenLightIsLeftAloneHoweverFewTheRays) {
 }
 
 TEST(Refine, NoiseOfAFewRaysIsNotTakenForLight) {
-  // A room lit softly by a whole wall: fewer rays find no more to cut than many do.
+  // A room with soft light from a whole wall: few rays find no more to refine than many.
   tests::SceneBuilder builder;
   const std::uint32_t dim = builder.material(tests::grey(0.6));
   const std::uint32_t lit = builder.material(tests::grey(0.2, 1.0));
@@ -152,7 +153,7 @@ TEST(Refine, NoiseOfAFewRaysIsNotTakenForLight) {
 }
 
 TEST(Refine, AFaintLampCountsLikeTheSun) {
-  // One plate in the Sun's hard shadow, another, below, under a lamp 1e9 times fainter.
+  // One plate with the Sun's hard shadow, another one below under a lamp 1e9 times fainter.
   scenes::Scene scene = shadowed_plate();
   tests::SceneBuilder builder;
   builder.scene = scene;
@@ -165,7 +166,7 @@ TEST(Refine, AFaintLampCountsLikeTheSun) {
 }
 
 TEST(Refine, ATinyTriangleInTheShadowsEdgeIsLeftWhole) {
-  // 2 mm across in the same light as the plate: its error is 1e-6 of the plate's.
+  // 2 mm wide in the same light as the plate: its error is 1e-6 of the plate's.
   tests::SceneBuilder builder;
   builder.scene = shadowed_plate();
   const double h = 0.001;
@@ -176,7 +177,7 @@ TEST(Refine, ATinyTriangleInTheShadowsEdgeIsLeftWhole) {
 
 TEST(Refine, LightThroughASmallWindowIsFound) {
   // A black box of 1 m around a white floor, with a hole of 6 cm in its lid: 16 points on cells of
-  // half a metre miss the spot on the floor, and a solution without light has no error to show.
+  // half a metre miss the spot on the floor, and a solution without light has no error estimate.
   tests::SceneBuilder builder;
   const std::uint32_t white = builder.material(tests::grey(0.5));
   scenes::Material sheet = tests::grey(0.0);
@@ -196,7 +197,7 @@ TEST(Refine, LightThroughASmallWindowIsFound) {
   for (std::size_t i = 0; i < refined.patches.facets[0].leaves; ++i) {
     landed_lm += 2.0 * refined.patches.area_m2[i] * double(refined.radiosity[i * 3 + 1]);
   }
-  // 133 100 lx on 36 cm2, but for the share of it on cells that the spot's edge crosses.
+  // 133 100 lx on 36 cm2, except for the part on cells that the spot's edge crosses.
   EXPECT_NEAR(landed_lm / (133100.0 * 0.06 * 0.06), 1.0, 0.05);
 }
 
@@ -222,8 +223,8 @@ TEST(Refine, SamePatchesAndLightOnOneAndFourThreads) {
 }
 
 TEST(Variation, HalvingAcrossAGradientTakesThreeQuartersOfItsErrorAway) {
-  // A lamp far to the side of a small plate: E falls linearly along x but for terms of second
-  // order. Halving along x leaves a quarter of the variance, halving along y all of it.
+  // A lamp far to the side of a small plate: E decreases linearly along x except for second-order
+  // terms. Halving along x leaves a quarter of the variance, halving along y all of it.
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 0.2, 0.0, true);
   builder.scene.lamps.push_back(lamp_at({1, 0, 1}, 100.0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Illuminance of patches by a sky in parts, against the same sky whole and against quadrature.
+// Illuminance of patches by a sky in parts, against the undivided sky and against quadrature.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,14 +22,14 @@ SolveOptions plain(int rays) {
   return options;
 }
 
-// A plate of 1 m alone in space: 16 patches of equal area.
+// A single plate of 1 m: 16 patches of equal area.
 scenes::Scene lone_plate() {
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
   return builder.scene;
 }
 
-// Mean over the patches, which are equal.
+// Mean over the patches, which have equal areas.
 std::vector<double> mean_direct(const scenes::Scene& scene, const SolveOptions& options) {
   const Solution solution = tests::Prepared(scene).solve(options);
   std::vector<double> means(solution.columns / 3, 0.0);
@@ -40,13 +40,13 @@ std::vector<double> mean_direct(const scenes::Scene& scene, const SolveOptions& 
   return means;
 }
 
-// The same rays find the same Earth: each of `cells` floats is rounded once, the whole once more.
+// The same rays hit the same Earth: each of `cells` floats is rounded once, the sum once more.
 TEST(SkyParts, CellsAddUpToTheWholeEarthOnEveryPatch) {
   for (const double half_angle_deg : {10.0, 69.6}) {  // from 30,000 km, and from 425 km
     tests::SceneBuilder builder;
     const std::uint32_t m = builder.material(tests::grey(0.6));
     builder.plate(m, 2.0, 0.0, true);
-    builder.plate(m, 1.0, 0.7, true);  // in between: a shadow, and light thrown back
+    builder.plate(m, 1.0, 0.7, true);  // in between: a shadow, and reflected light
     builder.quad(m, {1, -1, 0}, {1, -1, 2}, {1, 1, 2}, {1, 1, 0});
     builder.scene.earth = tests::even_earth({-0.3, 0.4, 1.0}, half_angle_deg, 100.0);
     const scenes::Scene cells = tests::in_parts(builder.scene, 48);
@@ -73,7 +73,7 @@ TEST(SkyParts, CellsAddUpToTheWholeEarthOnEveryPatch) {
                   2.0 * float_step * fine + 1e-8 * double(count) * 100.0 * pi);
     }
     EXPECT_GT(brightest, 1.0);
-    if (half_angle_deg < 18.0) continue;  // a narrow Earth that is whole is found by other rays
+    if (half_angle_deg < 18.0) continue;  // an undivided narrow Earth is sampled by other rays
     const Solution whole = tests::Prepared(builder.scene).solve(plain(512));
     for (std::size_t p = 0; p < whole.patches.count(); ++p) {
       double fine = 0.0;
@@ -86,8 +86,8 @@ TEST(SkyParts, CellsAddUpToTheWholeEarthOnEveryPatch) {
 }
 
 // E of cell k is the integral of L cos(theta) over it, here by 200 x 200 midpoints. The plate is
-// open: of its rays, spread by the cosine, a share p = E / (pi L) meets the cell, known to
-// sqrt(p (1 - p) / rays); stratified rays know it better.
+// open: of its cosine-distributed rays a share p = E / (pi L) hits the cell, with an error of
+// sqrt(p (1 - p) / rays); stratified rays have less.
 TEST(SkyParts, EachCellGivesItsOwnIlluminance) {
   for (const double half_angle_deg : {12.0, 69.6}) {
     scenes::Scene scene = lone_plate();
@@ -113,7 +113,7 @@ TEST(SkyParts, EachCellGivesItsOwnIlluminance) {
   }
 }
 
-// A point Sun over a plate without shadows: E cos(theta), whatever points are tried.
+// A point Sun over an unshadowed plate: E cos(theta) for any sample points.
 TEST(SkyParts, APointSunIsThatOfTheScene) {
   scenes::Scene scene = lone_plate();
   scenes::Sun sun;
@@ -127,8 +127,8 @@ TEST(SkyParts, APointSunIsThatOfTheScene) {
   EXPECT_NEAR(part, whole, 1000.0 * float_step);
 }
 
-// A Sun of 5 deg and a screen that hides it from a part of the plate: the Suns have other random
-// numbers, so that their means over 24 seeds agree within four of their standard errors.
+// A Sun of 5 deg and a screen that hides it from part of the plate. The Suns have different random
+// numbers: their means over 24 seeds agree within four standard errors.
 TEST(SkyParts, AWideSunThrowsTheSameShadow) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.0));

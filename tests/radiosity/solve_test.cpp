@@ -28,21 +28,21 @@ TEST(Solve, ClosedBoxReachesExitanceOverOneMinusReflectance) {
 }
 
 TEST(Solve, WhiteFurnaceOfMixedReflectancesIsOneEverywhere) {
-  // M = 1 - rho_i: B = 1 solves B = M + rho B whatever the rho_i.
+  // M = 1 - rho_i: B = 1 solves B = M + rho B for any rho_i.
   tests::SceneBuilder builder;
   std::array<std::uint32_t, 6> materials{};
   const double rho[] = {0.1, 0.5, 0.99, 0.999999, 0.0, 0.7};
   for (std::size_t k = 0; k < 6; ++k)
     materials[k] = builder.material(tests::grey(rho[k], 1.0 - rho[k]));
   builder.room(materials);
-  // The emission of 0.999999's face is small but carried through F like the others'.
+  // The emission of the face with 0.999999 is small but carried through F like the others'.
   const Solution solution = tests::Prepared(builder.scene).solve(coarse());
   for (const float b : solution.radiosity) EXPECT_NEAR(b, 1.0, 1e-6);
 }
 
 TEST(Solve, FurnaceWithAHalfMirrorInItIsStillAFurnace) {
-  // The half mirror (rho 0.2, M 0.2) sends 0.2 + 0.2 diffusely and shows 0.6 of the rest, which is
-  // 1 again: B is 0.4 on it and 1 on the others.
+  // The half mirror (rho 0.2, M 0.2) sends 0.2 + 0.2 diffusely and reflects 0.6 of the other light,
+  // which is again 1: B is 0.4 on it and 1 on the others.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.7, 0.3));
   scenes::Material mirror = tests::grey(0.2, 0.2);
@@ -83,7 +83,7 @@ TEST(Solve, EnergyInEqualsAbsorbedPlusEscapedPerGroup) {
 }
 
 TEST(Solve, LightIsLinearInEachGroup) {
-  // Twice the lamp is twice its column, and the other column does not move.
+  // Doubling the lamp doubles its column and does not change the other one.
   const auto solve_with = [](double intensity_cd) {
     tests::SceneBuilder builder;
     const std::uint32_t wall = builder.material(tests::grey(0.6));
@@ -108,7 +108,7 @@ TEST(Solve, SceneWithoutLightCastsNoRays) {
   tests::SceneBuilder builder;
   const std::uint32_t wall = builder.material(tests::grey(0.6));
   builder.room({wall, wall, wall, wall, wall, wall});
-  builder.scene.ambient_radiance = Rgb(5.0);  // no source: it bounces nowhere
+  builder.scene.ambient_radiance = Rgb(5.0);  // no source: it is not reflected
   const Solution solution = tests::Prepared(builder.scene).solve(coarse());
   EXPECT_EQ(solution.report.form_factor_rays, 0U);
   EXPECT_EQ(solution.columns, 0U);
@@ -116,7 +116,7 @@ TEST(Solve, SceneWithoutLightCastsNoRays) {
 }
 
 TEST(Solve, WhereNothingReflectsMoreRaysChangeAndCostNothing) {
-  // All light is direct, and F B = 0 whatever F is.
+  // All light is direct; F B = 0 for any F.
   tests::SceneBuilder builder;
   const std::uint32_t black = builder.material(tests::grey(0.0));
   builder.room({black, black, black, black, black, black});
@@ -138,8 +138,8 @@ TEST(Solve, WhereNothingReflectsMoreRaysChangeAndCostNothing) {
 
 TEST(Solve, CubeWithSixFacesMatchesTheExactSixSurfaceSystem) {
   // Faces z0 z1 x0 x1 y0 y1 of a unit cube in one patch each: values from view-factors.json (exact
-  // F by closed forms). Rays give F with a standard error of 0.4 / sqrt(N) per entry; with N =
-  // 65536 and these reflectances the error of B is below 4 x 0.002.
+  // F in closed form). Rays have a standard error of F of 0.4 / sqrt(N) per entry; with N = 65536
+  // and these reflectances the error of B is below 4 x 0.002.
   const double rho[] = {0.5, 0.75, 0.3, 0.6, 0.9, 0.05};
   const double emit[] = {0.0, 1.0, 0.0, 0.0, 0.2, 0.0};
   tests::SceneBuilder builder;

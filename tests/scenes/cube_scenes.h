@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A unit cube as an OBJ file, with faults put in by hand.
+// A unit cube as an OBJ file, with deliberate faults.
 #pragma once
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ inline std::string face(const std::array<int, 4>& f, bool turned = false, int st
   return text + "\n";
 }
 
-// turned: by face.
+// turned: faces with reversed winding.
 inline std::string cube_obj(const std::array<bool, 6>& turned, std::size_t faces = 6) {
   std::string text = corners;
   for (std::size_t k = 0; k < faces; ++k) text += face(cube[k], turned[k]);
@@ -51,7 +51,8 @@ inline scenes::Scene read(const std::string& obj, const std::string& toml = scen
   return folder.read(toml);
 }
 
-// By the divergence theorem, a sixth of the sum of a (b x c): 1 for the cube outward.
+// Volume by the divergence theorem, a sixth of the sum of a (b x c): 1 for the cube with outward
+// faces.
 inline double volume(const scenes::Scene& scene) {
   double sum = 0.0;
   for (const scenes::Triangle& t : scene.triangles) {

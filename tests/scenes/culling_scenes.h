@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A floor and what may light it, for the tests of what is skipped.
+// A floor and possible light sources, for the tests of culling.
 #pragma once
 
 #include <algorithm>
@@ -49,7 +49,7 @@ inline Earth earth_at(double height_deg, double half_angle_deg) {
   return earth;
 }
 
-// A plate in z = 0, 2 m wide, that looks up.
+// A plate in z = 0, 2 m wide, with its front up.
 inline tests::SceneBuilder floor_of(const Material& material) {
   tests::SceneBuilder builder;
   builder.plate(builder.material(material), 2.0, 0.0, true);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An orbit the way astronomers write it: inclination, node, argument of latitude in the equatorial
+// An orbit in astronomical elements: inclination, node, argument of latitude in the equatorial
 // inertial frame (x to the vernal equinox, z to the north pole), and the Sun by right ascension and
-// declination. It shares no algebra with scenes/sky/orbit.cpp, which knows the local vertical only.
+// declination. It shares no algebra with scenes/sky/orbit.cpp, which uses the local vertical only.
 #pragma once
 
 #include <cmath>
@@ -26,7 +26,7 @@ struct EquatorialOrbit {
   [[nodiscard]] Vec3 in_space(const Vec3& d) const {
     return about_z(about_x(d, inclination_deg), node_deg);
   }
-  // Unit, u the argument of latitude.
+  // Unit vectors; u is the argument of latitude.
   [[nodiscard]] Vec3 position(double u_deg) const { return in_space(about_z({1, 0, 0}, u_deg)); }
   [[nodiscard]] Vec3 velocity(double u_deg) const { return in_space(about_z({0, 1, 0}, u_deg)); }
   [[nodiscard]] Vec3 pole() const { return in_space({0, 0, 1}); }
@@ -35,13 +35,13 @@ struct EquatorialOrbit {
     return about_z({std::cos(declination), 0.0, std::sin(declination)}, sun_right_ascension_deg);
   }
 
-  // Argument of latitude where the spacecraft stands highest under the Sun.
+  // Argument of latitude where the Sun is highest above the spacecraft's horizon.
   [[nodiscard]] double noon_argument_deg() const {
     double best = 0.0;
     for (double u = 0.0; u < 360.0; u += 1.0) {
       if (glm::dot(position(u), sun()) > glm::dot(position(best), sun())) best = u;
     }
-    // There the velocity is square to the Sun: halve the interval of the sign's change.
+    // There the velocity is perpendicular to the Sun: bisects the sign change.
     double low = best - 1.5, high = best + 1.5;
     for (int step = 0; step < 80; ++step) {
       const double middle = 0.5 * (low + high);
@@ -60,7 +60,7 @@ struct EquatorialOrbit {
     return orbit;
   }
 
-  // Where the nose and the bay point, in space.
+  // Directions of nose and bay in inertial space.
   struct Pose {
     Vec3 nose, bay;
     [[nodiscard]] Vec3 in_body(const Vec3& d) const {  // x aft, y starboard, z out of the bay
@@ -72,7 +72,7 @@ struct EquatorialOrbit {
     if (attitude == "bay-to-earth") return {forward, -up};
     if (attitude == "bay-to-space") return {forward, up};
     if (attitude == "tail-down") return {up, forward};
-    // bay-to-sun, the nose as near to the orbit's north as it goes
+    // bay-to-sun, with the nose as close to the orbit's north as possible
     const Vec3 side = glm::normalize(glm::cross(pole(), sun()));
     return {glm::cross(sun(), side), sun()};
   }
@@ -80,7 +80,7 @@ struct EquatorialOrbit {
 
 // STS-46 in its first days: 28.5 deg, the Sun some 17 deg north.
 inline constexpr EquatorialOrbit sts46_like{28.5, 140.0, 134.0, 17.2};
-// High inclinations, backward motion, the Sun in the south.
+// High inclinations, a retrograde orbit, the Sun in the south.
 inline constexpr EquatorialOrbit some_orbits[] = {
     sts46_like, {51.6, 310.0, 250.0, -22.0}, {98.2, 75.0, 10.0, 4.0}, {5.0, 200.0, 300.0, -20.1}};
 

@@ -53,7 +53,7 @@ TEST(RayQuery, ShadowRayStopsAtItsEnd) {
   EXPECT_EQ(query.occluded(rays, 2), 0b10U);
 }
 
-// Only then is it taken off near points without rounding, and by every compiler alike.
+// Only then subtracting it from near points is exact, and equal with every compiler.
 TEST(RayQuery, SinglePrecisionHoldsTheCentre) {
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 2.0, 1.0, false);

@@ -12,7 +12,7 @@
 
 namespace earthshine::test {
 
-// A folder with scene.toml and whatever meshes a test puts beside it.
+// A folder with scene.toml and the meshes of a test.
 class SceneFolder {
  public:
   void put(const std::string& name, const std::string& bytes) const {
@@ -26,7 +26,7 @@ class SceneFolder {
     return scenes::read_scene(folder_ / "scene.toml", overrides);
   }
 
-  // The message of the refusal, with the folder's path taken out.
+  // The error message, without the folder's path.
   [[nodiscard]] std::string refusal(const std::string& toml,
                                     const std::vector<std::string>& overrides = {}) const {
     try {
@@ -50,7 +50,7 @@ class SceneFolder {
   TemporaryFolder folder_;
 };
 
-// All of the pieces occur in the text.
+// Whether all pieces occur in the text.
 inline ::testing::AssertionResult holds(const std::string& text,
                                         const std::vector<std::string>& pieces) {
   for (const std::string& piece : pieces) {

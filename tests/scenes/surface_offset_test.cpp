@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays start off surfaces by the rounding errors there: light and shadow do not depend on what else
-// is in the scene.
+// Ray offsets are bounds of the local rounding errors: light and shadow do not depend on the rest
+// of the scene.
 #include "scenes/surface_offset.h"
 
 #include <gtest/gtest.h>
@@ -23,8 +23,8 @@ Vec3 unit(std::mt19937& random) {
   return glm::normalize(v);
 }
 
-// The nearest corners of any triangle decide: a plane through the centre along the axes needs none,
-// a plane 10 m away from it along its normal 2 * 2^-24 * (2 * 10 m) = 2.4 um.
+// The nearest corners of any triangle decide: an axis-aligned plane through the centre needs no
+// offset, a plane 10 m from it along its normal 2 * 2^-24 * (2 * 10 m) = 2.4 um.
 TEST(SurfaceOffset, FollowsTheDistanceAlongTheNormal) {
   const double low = rounding_offset_m({{-1e4, -1e4, 0.0}, {1e4, -1e4, 0.0}, {0.0, 1e4, 0.0}});
   EXPECT_LT(low, 1e-7);
@@ -32,8 +32,8 @@ TEST(SurfaceOffset, FollowsTheDistanceAlongTheNormal) {
   EXPECT_NEAR(high, 2.0 * 0x1p-24 * 20.0, 1e-12);
 }
 
-// Triangles of 1 mm to 10 km, needles among them, up to 10 km from the centre: no ray that starts
-// off them and goes away from them meets them again. 400 triangles, 256 rays each.
+// Triangles of 1 mm to 10 km, including needles, up to 10 km from the centre: no ray that starts at
+// the offset and leaves hits its own triangle. 400 triangles, 256 rays each.
 TEST(SurfaceOffset, NoRayMeetsTheTriangleThatItLeaves) {
   std::mt19937 random(61);
   std::uniform_real_distribution<double> even(0.0, 1.0);
@@ -69,7 +69,7 @@ TEST(SurfaceOffset, NoRayMeetsTheTriangleThatItLeaves) {
       for (std::size_t k = 0; k < RayPacket::width; ++k) {
         const double root = std::sqrt(even(random)), v1 = even(random);
         const Vec3 at = a + root * (1.0 - v1) * (b - a) + root * v1 * (c - a);
-        // Half of the rays graze the surface.
+        // Half of the rays are grazing.
         Vec3 way = unit(random);
         if (k % 2 == 0) way = glm::normalize(way - (1.0 - 1e-3) * glm::dot(way, normal) * normal);
         const double side = k % 4 < 2 ? 1.0 : -1.0;
@@ -85,7 +85,7 @@ TEST(SurfaceOffset, NoRayMeetsTheTriangleThatItLeaves) {
 }
 
 // Two squares of 1 m, 5 mm apart: rays that leave one at more than 45 degrees from its normal, at
-// least 1 cm from its edge, meet the other, whatever stands 0.1 to 10 km away in any direction.
+// least 1 cm from its edge, hit the other, with any objects 0.1 to 10 km away in any direction.
 TEST(SurfaceOffset, AGapStaysOpenWhateverStandsFarAway) {
   std::mt19937 random(62);
   std::uniform_real_distribution<double> even(-0.49, 0.49);
@@ -111,9 +111,9 @@ TEST(SurfaceOffset, AGapStaysOpenWhateverStandsFarAway) {
   }
 }
 
-// A step of height h throws a shadow of h / tan(elevation). By bisection along the plane it lies
-// within 1 % of that, for h from 0.1 mm to 1 m on planes from 1 m to 20 km, and where the plane
-// reaches 50 km to one side only.
+// A step of height h casts a shadow of h / tan(elevation). By bisection along the plane it agrees
+// within 1 %, for h from 0.1 mm to 1 m on planes from 1 m to 20 km, and for a plane that extends 50
+// km to one side only.
 TEST(SurfaceOffset, AStepsShadowDoesNotDependOnThePlane) {
   const double elevation = base::radians(5.0);
   const Vec3 sun(std::cos(elevation), 0.0, std::sin(elevation));
@@ -130,7 +130,7 @@ TEST(SurfaceOffset, AStepsShadowDoesNotDependOnThePlane) {
       double dark = 0.0, lit = -30.0 * step_m;
       for (int k = 0; k < 40; ++k) {
         const double x = 0.5 * (dark + lit);
-        // Straight down, as a camera looks.
+        // Straight down, like a camera.
         const Vec3 eye(x, 0.1, 1.0 + step_m);
         const Hit hit = query.closest(eye, {0, 0, -1});
         ASSERT_FALSE(hit.missed());
@@ -147,8 +147,8 @@ TEST(SurfaceOffset, AStepsShadowDoesNotDependOnThePlane) {
   }
 }
 
-// From 10 m to 10 000 km rays of a camera meet the same triangles of a small scene, at the same
-// places to 1e-6 of the distance that they lie apart.
+// From 10 m to 10 000 km camera rays hit the same triangles of a small scene, at the same points to
+// 1e-6 of the distance between the origins.
 TEST(SurfaceOffset, RaysFromFarAwayMeetWhatRaysFromNearDo) {
   tests::SceneBuilder builder;
   const std::uint32_t grey = builder.material(tests::grey(0.5));
@@ -178,7 +178,7 @@ TEST(SurfaceOffset, RaysFromFarAwayMeetWhatRaysFromNearDo) {
   }
 }
 
-// What single precision cannot hold is said: plates 5 mm apart, 100 km from the lamp that the
+// A warning names details below single precision: plates 5 mm apart, 100 km from the lamp that the
 // camera looks at.
 TEST(SurfaceOffset, GapsThatSinglePrecisionLosesAreNamed) {
   const auto text = [](double away_m) {

@@ -15,7 +15,7 @@ TEST(NearestOnTriangle, NoPointIsNearer) {
   for (int k = 0; k < 200; ++k) {
     const Vec3 a = point(), b = point(), c = point(), p = 3.0 * point() - 1.0;
     const Vec3 found = nearest_on_triangle(p, a, b, c);
-    // It is of the triangle: its three areas add up to the triangle's.
+    // It is in the triangle: its three areas add up to the triangle's.
     const auto area = [](const Vec3& x, const Vec3& y, const Vec3& z) {
       return glm::length(glm::cross(y - x, z - x));
     };
@@ -28,7 +28,7 @@ TEST(NearestOnTriangle, NoPointIsNearer) {
   }
 }
 
-// What is weighted by (u, v), and then taken off the plane, has them.
+// A point with weights (u, v), moved off the plane, has these weights.
 TEST(Barycentric, AreTheWeightsOfAPointsFoot) {
   base::Rng rng(base::Key(1, base::Stream::Pixel, 4));
   const auto point = [&] { return Vec3(rng.next(), rng.next(), rng.next()); };

@@ -11,10 +11,10 @@ namespace {
 struct DirectedEdge {
   std::uint32_t from, to;  // merged corners
   std::uint32_t polygon;
-  int k;  // from its corner k to the next
+  int k;  // from corner k of the face to the next
 };
 
-// Numbers corners by place: those within margin_m of each other along the sorted x get one number.
+// Numbers corners by position: corners within margin_m of each other get one number. Sorted by x.
 std::vector<std::vector<std::uint32_t>> number_corners(std::span<const ConvexPolygon> polygons,
                                                        double margin_m) {
   struct Corner {
@@ -34,7 +34,7 @@ std::vector<std::vector<std::uint32_t>> number_corners(std::span<const ConvexPol
            std::tie(b.at.x, b.at.y, b.at.z, b.polygon, b.k);
   });
   std::vector<Vec3> place;
-  std::size_t first = 0;  // places before it lie further back in x than the margin
+  std::size_t first = 0;  // earlier positions are farther back in x than the margin
   for (const Corner& corner : corners) {
     while (first < place.size() && place[first].x < corner.at.x - margin_m) ++first;
     std::size_t found = first;
@@ -66,7 +66,7 @@ class EdgeTable {
     });
   }
   [[nodiscard]] const std::vector<DirectedEdge>& all() const { return edges_; }
-  // The edge from one corner to another if there is exactly one.
+  // The edge from one corner to another if it is unique.
   [[nodiscard]] const DirectedEdge* only(std::uint32_t from, std::uint32_t to) const {
     const auto range = std::equal_range(edges_.begin(), edges_.end(), DirectedEdge{from, to, 0, 0},
                                         [](const DirectedEdge& a, const DirectedEdge& b) {
@@ -79,7 +79,7 @@ class EdgeTable {
   std::vector<DirectedEdge> edges_;
 };
 
-// Every face has all the others' corners behind it.
+// Whether every face has the corners of all other faces behind it.
 bool is_convex(std::span<const ConvexPolygon> polygons, std::span<const std::uint32_t> faces,
                double margin_m) {
   for (const std::uint32_t f : faces) {
@@ -119,7 +119,7 @@ ConvexBodies find_convex_bodies(std::span<const ConvexPolygon> polygons, double 
 
   ConvexBodies found;
   found.of_polygon.assign(polygons.size(), no_body);
-  std::vector<std::uint32_t> place(polygons.size(), 0);  // among its body's faces
+  std::vector<std::uint32_t> place(polygons.size(), 0);  // index among its body's faces
   for (const std::vector<std::uint32_t>& group : faces) {
     const bool closed = std::none_of(group.begin(), group.end(), [&](auto f) { return open[f]; });
     if (group.size() < 4 || !closed || !is_convex(polygons, group, margin_m)) continue;
@@ -157,7 +157,7 @@ void Shaft::add_planes(const ConvexPolygon& from, const ConvexPolygon& to) {
   for (int k = 0; k < from.count; ++k) {
     const Vec3& start = from[k];
     const Vec3 edge = from.next(k) - start;
-    // Turn a plane about the edge, outwards, until nothing of `to` is beyond it.
+    // Rotates a plane about the edge, outward, until all of `to` is behind it.
     Vec3 normal = glm::cross(edge, to[0] - start);
     for (int j = 1; j < to.count; ++j) {
       if (glm::dot(normal, to[j] - start) > 0.0) normal = glm::cross(edge, to[j] - start);
@@ -165,7 +165,7 @@ void Shaft::add_planes(const ConvexPolygon& from, const ConvexPolygon& to) {
     const double length = glm::length(normal);
     if (length <= margin_m_ * glm::length(edge)) continue;
     const Plane plane{start, normal / length};
-    // Touching polygons have corners on the edge's own line, which leave the turning undecided.
+    // Touching polygons have corners on the edge's line, which leave the rotation undefined.
     bool bounds = true;
     for (const ConvexPolygon* polygon : {&from, &to}) {
       for (int j = 0; j < polygon->count; ++j) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Closed convex bodies among a scene's facets, whoever modelled them. From outside, what such a
-// body hides is hidden by its faces towards the viewer alone, and is one convex cone about its
-// outline.
+// Detects closed convex bodies among a scene's facets. From outside, such a body occludes with the
+// faces toward the viewer only: its shadow is one convex cone through its outline.
 #pragma once
 
 #include <array>
@@ -23,7 +22,7 @@ struct ConvexBody {
   std::vector<Plane> faces;  // normals outwards
   std::vector<Edge> edges;
 
-  // The whole body is in front of the plane.
+  // Whether the whole body is in front of the plane.
   [[nodiscard]] bool is_before(const Plane& plane, double margin_m) const;
 };
 
@@ -32,19 +31,19 @@ struct ConvexBodies {
   std::vector<ConvexBody> bodies;
 };
 
-// A body's faces share whole edges with one another, two by two, and look outwards. Corners within
-// margin_m are one.
+// The faces of a body share whole edges pairwise and have outward normals. Corners within margin_m
+// are merged.
 [[nodiscard]] ConvexBodies find_convex_bodies(std::span<const ConvexPolygon> polygons,
                                               double margin_m);
 
-// What can stand between two polygons: the convex hull of both, as planes.
+// The convex hull of two polygons, as planes: space of possible occluders (shaft).
 
 // The polygons must be in front of each other (heights >= 0 up to margin_m).
 class Shaft {
  public:
   Shaft(const ConvexPolygon& first, const ConvexPolygon& second, double margin_m);
 
-  // False if nothing of the blocker is between the two; conservative.
+  // False if nothing of the blocker is between the two polygons; conservative.
   [[nodiscard]] bool may_hide(const ConvexPolygon& blocker) const;
 
  private:

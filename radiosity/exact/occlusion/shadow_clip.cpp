@@ -9,9 +9,9 @@
 namespace earthshine::radiosity {
 namespace {
 
-// Sine below which edges count as parallel, and the share of a side within which points are one.
+// Sine below which edges count as parallel, and share of a side within which points are merged.
 constexpr double parallel = 1e-7, same = 1e-9;
-// Round bodies have no edges that matter one by one.
+// Limit of kinks per side: single edges of round bodies do not matter.
 constexpr std::size_t most_edges = 48;
 
 }  // namespace
@@ -33,7 +33,7 @@ void ShadowClip::set(const TargetFrame& frame, const ConvexPolygon& target,
   area_m2_ = area_m2(target);
 }
 
-// The plane through the point and an edge of the outline, where it meets the target's plane.
+// Adds the line in which the plane through the point and an outline edge meets the target's plane.
 void ShadowClip::add_line(const Vec3& from, const Vec3& to, double turn) {
   const Vec3 n = turn * glm::cross(from, to);
   lines_.push_back({n.x, n.y, -glm::dot(n, point_), margin_m_ * (std::abs(n.x) + std::abs(n.y))});
@@ -44,7 +44,7 @@ bool ShadowClip::make_lines(const Blocker& blocker) {
   if (blocker.whole_body) return make_outline(*blocker.body);
   const ConvexPolygon& face = blocker.shape;
   const double side = glm::dot(face.normal, point_ - face[0]);
-  // Edge-on it has no width.
+  // Seen edge-on it has no width.
   if (std::abs(side) <= margin_m_) return false;
   if (side < 0.0 && blocker.body != nullptr && is_outside(*blocker.body)) return false;
   Vec3 from = face[face.count - 1] - point_;
@@ -62,7 +62,7 @@ bool ShadowClip::is_outside(const ConvexBody& body) const {
                      [&](const Plane& face) { return face.height(from_here) > margin_m_; });
 }
 
-// The edges between faces towards the point and faces away from it.
+// The edges between faces toward the point and faces away from it.
 bool ShadowClip::make_outline(const ConvexBody& body) {
   const Vec3 from_here = frame_->to_scene(point_);
   faces_point_.clear();
@@ -89,8 +89,8 @@ bool ShadowClip::clear_of_lines(const Piece& piece) const {
   return false;
 }
 
-// Splits the piece along the lines: what is outside one of them stays visible, what is inside all
-// of them is hidden.
+// Divides the piece along the lines: outside any line it stays visible, inside all lines it is
+// hidden.
 void ShadowClip::subtract(const Piece& piece) {
   Piece inside = piece;
   for (const Line& line : lines_) {
@@ -108,7 +108,7 @@ void ShadowClip::subtract(const Piece& piece) {
       visible_.push_back(inside);
       return;
     }
-    // At most two corners more than before in both parts together, and two that both have.
+    // Both parts together have at most two more corners than before, and two in common.
     const auto start = static_cast<std::uint32_t>(corners_.size());
     corners_.resize(start + 2 * inside.count + 4);
     const Corner* from = &corners_[inside.start];
@@ -190,8 +190,8 @@ double ShadowClip::visible_area_share() const {
   return 0.5 * twice / area_m2_;
 }
 
-// An edge along `along`, as a point of the plane across it: `across` in units of the receiver's
-// side, `towards` the height above the receiver in metres.
+// An edge parallel to `along`, as a point of the perpendicular plane: `across` in units of the
+// receiver's side, `towards` the height above the receiver in metres.
 void ShadowKinks::collect(const Vec3& from, const Vec3& to, const Lookout& lookout,
                           std::vector<Point>& points) {
   const Vec3 edge = to - from;
@@ -217,7 +217,7 @@ void ShadowKinks::find(const Vec3& corner, const Vec3& side, const Vec3& along,
                   Vec3(0.0),
                   glm::length(side),
                   glm::length(along)};
-  // In the plane spanned by side and normal, seen along `along`.
+  // In the plane spanned by side and normal, projected along `along`.
   const Vec3 across = glm::cross(along, lookout.normal);
   lookout.across = across / glm::dot(across, side);
   of_target_.clear();

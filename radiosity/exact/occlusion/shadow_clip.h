@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a point sees of a flat polygon past others: their shadows are cut off it exactly.
+// Visible part of a flat polygon from a point: the shadows of occluders are cut off exactly.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace earthshine::radiosity {
 
-// A face of a closed convex body hides nothing from behind that the body's other faces do not hide,
-// as long as the view starts outside the body. In the body, and where a face of it lies on the
-// receiver, every face hides.
+// For views from outside a closed convex body, its faces away from the viewer occlude nothing that
+// its other faces do not. Inside the body, and if one of its faces lies on the receiver, every face
+// occludes.
 struct Blocker {
   ConvexPolygon shape;
-  const ConvexBody* body = nullptr;  // that it is a face of, in the scene's coordinates
-  // All of the body is in front of both polygons: its outline is the shadow of all its faces.
+  const ConvexBody* body = nullptr;  // the body it is a face of, in scene coordinates
+  // The whole body is in front of both polygons: its outline is the shadow of all its faces.
   bool whole_body = false;
 };
 
@@ -37,14 +37,14 @@ class TargetFrame {
   base::Frame3 axes_;
 };
 
-// All in the target's frame. The parts are disjoint and together make up the target.
+// Everything in the target's frame. The parts are disjoint and together form the target.
 class ShadowClip {
  public:
   // Blockers must lie in front of the target (h >= 0) and of the planes of all points used.
   void set(const TargetFrame& frame, const ConvexPolygon& target, std::span<const Blocker> blockers,
            double margin_m);
 
-  // Cuts the target as seen from `point` (h > 0).
+  // Divides the target as seen from `point` (h > 0).
   void cut(const Vec3& point);
   [[nodiscard]] bool wholly_visible() const { return hidden_.empty(); }
   [[nodiscard]] bool wholly_hidden() const { return visible_.empty(); }
@@ -86,23 +86,23 @@ class ShadowClip {
   double margin_m_ = 0.0, area_m2_ = 0.0;
 };
 
-// Where on a receiver the view of a target past blockers has kinks: a point crosses a plane through
-// two parallel edges, of which one passes behind the other there. Only planes that cut the
-// receiver parallel to one of its sides are found; between right-angled bodies these are all.
+// Kinks of the view of a target past occluders, on a receiver: planes through two parallel edges,
+// where one passes behind the other. Finds only planes that meet the receiver parallel to one of
+// its sides; between right-angled bodies these are all.
 
 class ShadowKinks {
  public:
-  // The receiver is corner + x ab + y ad, x and y in [0, 1]. All in the target's frame.
+  // The receiver is corner + x ab + y ad, x and y in [0, 1]. Everything in the target's frame.
   void find(const Vec3& corner, const Vec3& ab, const Vec3& ad, const TargetFrame& frame,
             const ConvexPolygon& target, std::span<const Blocker> blockers);
   void clear();
 
-  // Where to split [low, high]: at the kink nearest to the middle, in the middle if there is none.
+  // Where to divide [low, high]: at the kink nearest to the middle, else in the middle.
   [[nodiscard]] double split_x(double low, double high) const { return split(at_x_, low, high); }
   [[nodiscard]] double split_y(double low, double high) const { return split(at_y_, low, high); }
 
  private:
-  struct Point {  // an edge seen along its own direction
+  struct Point {  // an edge projected along its own direction
     double across, towards;
   };
 

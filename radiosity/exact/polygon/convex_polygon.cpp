@@ -82,8 +82,8 @@ void area_points(const ConvexPolygon& polygon, int points, std::vector<AreaPoint
   const base::GaussRule& rule = base::gauss_rule(points);
   out.clear();
   for (int k = 1; k + 1 < polygon.count; k += 2) {
-    // The bilinear quadrilateral p = a + x (b - a) + y (d - a) + x y (a - b + c - d); a triangle is
-    // one whose last two corners coincide.
+    // The bilinear quadrilateral p = a + x (b - a) + y (d - a) + x y (a - b + c - d); for a
+    // triangle the last two corners coincide.
     const Vec3 &a = polygon[0], &b = polygon[k], &c = polygon[k + 1];
     const Vec3& d = k + 2 < polygon.count ? polygon[k + 2] : c;
     const Vec3 ab = b - a, ad = d - a, twist = (c - d) - ab;

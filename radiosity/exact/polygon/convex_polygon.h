@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Flat convex polygons in space: what the exact form factors are computed between.
+// Flat convex polygons in space, for the exact form factors.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace earthshine::radiosity {
 
-// Corners run counter-clockwise about the unit normal; two of them may coincide (the cell at a
-// triangle's apex). A quadrilateral cut by three planes has seven corners at most.
+// Corners are counter-clockwise about the unit normal; two may coincide (the cell at a triangle's
+// apex). A quadrilateral cut by three planes has at most seven corners.
 struct ConvexPolygon {
   static constexpr int most_corners = 8;
   std::array<Vec3, most_corners> corner{};
@@ -25,7 +25,7 @@ struct ConvexPolygon {
     corner[static_cast<std::size_t>(count++)] = point;
   }
   [[nodiscard]] const Vec3& operator[](int k) const { return corner[static_cast<std::size_t>(k)]; }
-  // Corner k + 1, the first again after the last.
+  // Corner k + 1; the first one follows the last.
   [[nodiscard]] const Vec3& next(int k) const { return (*this)[k + 1 == count ? 0 : k + 1]; }
 };
 
@@ -34,7 +34,7 @@ struct Plane {
   [[nodiscard]] double height(const Vec3& p) const { return glm::dot(normal, p - point); }
 };
 
-// A sphere about the polygon's middle that holds all corners.
+// A sphere about the polygon's middle that contains all corners.
 struct Ball {
   Vec3 centre{0.0};
   double radius = 0.0;
@@ -45,7 +45,7 @@ struct Ball {
 [[nodiscard]] Ball ball_around(const ConvexPolygon& polygon);
 
 // The part in front of the plane (height >= 0). Corners within `margin_m` of the plane count as on
-// it; without a corner more than that in front, the result is empty.
+// it; the result is empty unless a corner is farther in front.
 [[nodiscard]] ConvexPolygon clip(const ConvexPolygon& polygon, const Plane& plane, double margin_m);
 
 // Distance from a point to the polygon, m.
@@ -61,7 +61,7 @@ struct AreaPoint {
 // points x points per quadrilateral of the polygon (a fan about its first corner).
 void area_points(const ConvexPolygon& polygon, int points, std::vector<AreaPoint>& out);
 
-// The same as columns, four at a time: the last four are filled up with points of weight 0.
+// The same points by coordinates, padded to a multiple of four with points of weight 0.
 struct PointView {
   const double *x, *y, *z, *weight_m2;
   std::size_t count;  // a multiple of 4
@@ -69,7 +69,7 @@ struct PointView {
 class PointColumns {
  public:
   void clear();
-  // Appends and returns the first of the new points.
+  // Appends points and returns the index of the first one.
   std::size_t add(const ConvexPolygon& polygon, int points);
   [[nodiscard]] std::size_t count() const { return x_.size(); }
   [[nodiscard]] PointView view(std::size_t first, std::size_t count) const {

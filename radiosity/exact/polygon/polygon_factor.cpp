@@ -34,12 +34,12 @@ double point_share(const ConvexPolygon& polygon, const Vec3& point, const Vec3& 
   return sum.share();
 }
 
-// Edges closer to parallel than this are taken as parallel: ln r changes by about as much.
+// Sine below which edges count as parallel: ln r changes by about as much.
 constexpr double parallel_sine = 1e-9;
-// Lines that meet at less than this lose too many digits in the closed form: 1 / sine^2.
+// Sine below which the closed form for intersecting lines loses too many digits: 1 / sine^2.
 constexpr double meeting_sine = 0.02;
-// Lines passing each other nearer than this share of the edges' extent count as meeting: what is
-// left out is c^2 times a logarithm.
+// Lines whose distance is below this share of the edges' extent count as intersecting: the error is
+// c^2 times a logarithm.
 constexpr double meeting_share = 1e-8;
 
 // Second antiderivative in u of ln sqrt(u^2 + c^2).
@@ -79,9 +79,9 @@ double inner_integral(const Segment& e, const Vec3& q) {
   return log_integral(-along, e.length - along, c);
 }
 
-// s and t count from where the lines meet: r^2 = s^2 + t^2 - 2 s t cosine.
+// s and t are measured from the intersection: r^2 = s^2 + t^2 - 2 s t cosine.
 double meeting_integral(double s0, double s1, double t0, double t1, double cosine, double sine) {
-  // At fixed s the point is s * cosine along f's line and s * sine off it.
+  // At fixed s the point has the coordinates s * cosine along f's line and s * sine off it.
   const auto side = [=](double fixed, double a, double b) {
     return log_integral(a - fixed * cosine, b - fixed * cosine, std::abs(fixed) * sine);
   };
@@ -90,11 +90,11 @@ double meeting_integral(double s0, double s1, double t0, double t1, double cosin
   return 0.5 * (border - (s1 - s0) * (t1 - t0));
 }
 
-// Where the inner integral, as a function of the place t on f, stops being analytic: beside the
-// ends of e, |q(t) - end| = 0, and beside the closest approach of the two lines, where the distance
-// to e's line is 0. Edges that nearly touch along all of their length have no others.
+// Singularities of the inner integral as a function of the position t on f: at the ends of e, |q(t)
+// - end| = 0, and at the closest approach of the two lines, where the distance to e's line is 0.
+// Edges that nearly touch along their whole length have no others.
 struct Singularity {
-  double t, off;  // t + i off and t - i off
+  double t, off;  // singularities at t + i off and t - i off
 };
 using Singularities = std::array<Singularity, 3>;
 
@@ -115,9 +115,9 @@ Singularities singularities(const Segment& e, const Segment& f, double cosine, c
 double skew_piece(const Segment& e, const Segment& f, const Singularities& poles, double t0,
                   double t1, int depth) {
   const double half = 0.5 * (t1 - t0), middle = 0.5 * (t0 + t1);
-  // A Gauss rule of n points errs by about growth^(-2n), growth of the largest ellipse about the
-  // piece that the singularities leave free (half the sum of their distances from the foci is its
-  // larger half axis).
+  // The error of an n-point Gauss rule is about growth^(-2n), with growth from the largest ellipse
+  // about the interval that is free of singularities (its semi-major axis is half the sum of a
+  // singularity's distances from the foci).
   double axis = std::numeric_limits<double>::infinity();
   for (const Singularity& pole : poles) {
     const double x = (pole.t - middle) / half, y = pole.off / half;
@@ -224,7 +224,8 @@ double exchange_m2(const ConvexPolygon& first, const ConvexPolygon& second, doub
     std::swap(a, b);
     std::swap(ball_a, ball_b);
   }
-  // A speck before a wall: the contour's terms are (wall / speck)^2 times their sum or more.
+  // A small polygon before a wall: the contour's terms are (wall / small)^2 times their sum or
+  // more.
   const double distance = distance_m(b, ball_a.centre);
   if (ball_a.radius < 0.01 * (ball_b.radius + distance) && distance > 1.5 * ball_a.radius) {
     return lambert_exchange_m2(a, b, 6);

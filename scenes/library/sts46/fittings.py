@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arm, antenna, lamps, cameras, latches: what is bolted to the orbiter around the payloads.
+"""Arm, antenna, lamps, cameras and latches on the orbiter around the payloads.
 
-Tags as in orbiter.py. LAMPS and CAMERAS are read by scene_files.py too, so that a lamp or an eye always stands
-just outside its own housing.
+Tags as in orbiter.py. scene_files.py reads LAMPS and CAMERAS too, so that each lamp and camera is just outside its own
+housing.
 """
 import math
 
@@ -10,7 +10,8 @@ from mesh_kit import (add, beam, box, circle, cross, cylinder, loft, mul, orient
                       unit)
 
 # ---- lamps --------------------------------------------------------------------------------------------------------
-# name, group, lamp position Xo Yo Zo [S], direction it shines [S]: bay lamps inboard and up, 40 deg off +Zo
+# name, group, lamp position Xo Yo Zo [S], direction of emission [S]: bay lamps inboard and up, 40
+# deg off +Zo
 TILT = math.radians(40.0)
 BAY_LAMPS = (("bay-1-forward-starboard", 742.9, 56.0, 325.2), ("bay-2-forward-port", 757.1, -48.0, 320.0),
              ("bay-3-mid-starboard", 972.5, 54.3, 323.9), ("bay-4-mid-port", 972.5, -54.3, 323.9),
@@ -59,7 +60,7 @@ def lamp_housings():
 
 
 # ---- cameras ------------------------------------------------------------------------------------------------------
-# name, base of the pan axis Xo Yo Zo [S], what it looks at (scene metres, chosen here)
+# name, base of the pan axis Xo Yo Zo [S], point that it looks at (scene metres, chosen here)
 FIELD_OF_VIEW = {"A": 34, "B": 42, "C": 42, "D": 42, "elbow": 44}  # deg, vertical, chosen here
 LENS_AHEAD = 0.18   # m ahead of the pan axis [S]
 TILT_HEIGHT = 0.20  # m of the tilt axis above the base, estimate

@@ -247,7 +247,7 @@ def snap(point):
 
 
 def check_body(body):
-    """What is wrong with a body, as it will be written: a list of lines, empty when all is well."""
+    """The faults of a body as written: a list of lines, empty if there are none."""
     problems = []
     edges = {}
     volume = 0.0

@@ -148,8 +148,9 @@ def material_text(material):
     return "\n".join(lines)
 
 
-# Bodies whose mesh is a coarse hull of a round one: smooth_deg, below which an edge is round (the arm's 12 sides turn by 30), and
-# round_deg, by which no round edge turns in the picture.
+# Objects whose mesh is a coarse polygon approximation of a round body: smooth_deg, the angle below
+# which an edge is round (the arm's 12 sides turn by 30), and round_deg, the largest angle between
+# faces of the refined mesh.
 ROUND_DEG = {"tss": (30, 3), "tss-deployer": (30, 5), "canisters": (30, 5), "arm": (35, 5), "ku-antenna": (30, 5)}
 
 

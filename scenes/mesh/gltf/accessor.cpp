@@ -17,13 +17,13 @@
 namespace earthshine::scenes {
 namespace {
 
-// Offsets, counts and strides come from the file: 64-bit sums of them overflow, 128-bit sums do
-// not.
+// Offsets, counts and strides come from the file. Their 64-bit sums could overflow; 128-bit sums
+// cannot.
 __extension__ using Wide = unsigned __int128;
 
 constexpr std::size_t most_elements = 3 * max_gltf_triangles;
 
-// `count` elements of `size` bytes, `stride` apart, all of them inside the buffer.
+// `count` elements of `size` bytes at distance `stride`, all inside the buffer.
 struct Elements {
   const unsigned char* first = nullptr;
   std::size_t stride = 0;
@@ -77,7 +77,7 @@ std::size_t index_bytes(int type, const std::filesystem::path& path) {
   gltf_fail(path, "indices of a type that is none", "indices are unsigned bytes, shorts or ints");
 }
 
-// Little-endian, as are the machines this runs on.
+// Little-endian, as all supported machines are.
 std::uint32_t index_at(const unsigned char* bytes, std::size_t size) {
   std::uint32_t index = 0;
   std::memcpy(&index, bytes, size);
@@ -89,7 +89,7 @@ double whole_at(const unsigned char* bytes, bool normalized) {
   Number value = 0;
   std::memcpy(&value, bytes, sizeof value);
   if (!normalized) return static_cast<double>(value);
-  // glTF 2.0, 3.6.2.2: the least negative number stands for -1 too.
+  // glTF 2.0, 3.6.2.2: the most negative number also represents -1.
   return std::max(-1.0, static_cast<double>(value) / std::numeric_limits<Number>::max());
 }
 
@@ -116,7 +116,7 @@ int components_of(const tinygltf::Accessor& accessor) {
   return tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
 }
 
-// The accessor's numbers; the rest are 0, and a fourth one is 1.
+// The accessor's components; missing ones are 0, a missing fourth one is 1.
 glm::dvec4 vector_at(const unsigned char* bytes, const tinygltf::Accessor& accessor,
                      const GltfAttribute& attribute, const std::filesystem::path& path) {
   glm::dvec4 v(0.0, 0.0, 0.0, 1.0);

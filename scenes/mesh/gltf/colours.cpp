@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours of vertices (COLOR_0), which multiply the base colour of whatever material a primitive
-// wears (glTF 2.0, 3.9.2): a variant of the material where they are all alike, else Mesh::colours.
+// Vertex colours (COLOR_0) multiply the base colour of a primitive's material (glTF 2.0, 3.9.2). If
+// they are all equal, they make a variant of the material; otherwise they are stored in
+// Mesh::colours.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +15,7 @@ namespace {
 
 constexpr const char* default_material = "glTF default";
 
-// By area of the triangles; of strips and fans, by vertices.
+// Weighted by triangle area; for strips and fans the mean over vertices.
 glm::dvec4 mean_colour(const GltfModel& model, const tinygltf::Primitive& primitive,
                        const std::vector<glm::dvec4>& colours, const std::filesystem::path& path) {
   glm::dvec4 sum(0.0), plain(0.0);
@@ -33,7 +34,7 @@ glm::dvec4 mean_colour(const GltfModel& model, const tinygltf::Primitive& primit
   const std::size_t count = std::min(places.size(), colours.size());
   for (std::size_t i = 0; i + 3 <= corners.size(); i += 3) {
     const std::uint32_t a = corners[i], b = corners[i + 1], c = corners[i + 2];
-    if (std::max({a, b, c}) >= count) return plain;  // refused where it is worn
+    if (std::max({a, b, c}) >= count) return plain;  // reported when it is used
     const double area = glm::length(glm::cross(places[b] - places[a], places[c] - places[a]));
     sum += area / 3.0 * (colours[a] + colours[b] + colours[c]);
     all += area;
@@ -41,7 +42,7 @@ glm::dvec4 mean_colour(const GltfModel& model, const tinygltf::Primitive& primit
   return all > 0.0 ? sum / all : plain;
 }
 
-// The materials of a model in the colours of its primitives.
+// Materials of a model in the colours of its primitives.
 class Wardrobe {
  public:
   Wardrobe(GltfModel& model, GltfTextures& textures, const std::filesystem::path& path)
@@ -65,7 +66,7 @@ class Wardrobe {
   std::uint32_t worn_by(const tinygltf::Primitive& primitive) {
     const std::uint32_t material =
         primitive.material >= 0 ? static_cast<std::uint32_t>(primitive.material) : default_number_;
-    if (material >= model_.file.materials.size()) return no_index;  // refused where it is worn
+    if (material >= model_.file.materials.size()) return no_index;  // reported when it is used
     std::vector<glm::dvec4> colours = read_gltf_colours(model_, primitive, path_);
     if (colours.empty()) return material;
     const tinygltf::Material& source = model_.file.materials[material];
@@ -85,7 +86,7 @@ class Wardrobe {
   }
 
  private:
-  // What glTF 2.0, 3.9.6 has a primitive without a material wear.
+  // Default material of primitives without a material (glTF 2.0, 3.9.6).
   void add_default() {
     default_number_ = static_cast<std::uint32_t>(model_.file.materials.size());
     model_.file.materials.emplace_back();

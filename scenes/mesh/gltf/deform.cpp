@@ -22,7 +22,7 @@ std::optional<int> attribute_of(const tinygltf::Primitive& primitive, const std:
   return found->second;
 }
 
-// The matrices of a skin's joints: from the mesh at rest to where the joint is.
+// The matrices of a skin's joints: from the rest pose to the joint's pose.
 class Joints {
  public:
   Joints(const GltfModel& model, int number, const std::filesystem::path& path)

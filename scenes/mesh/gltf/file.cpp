@@ -60,7 +60,7 @@ class GltfReader {
         material.name = fmt::format("{} ({})", mesh_.material_names[base], material.name);
       }
       if (material.name.empty()) material.name = fmt::format("material {}", i);
-      // Materials are told apart by name from here on.
+      // Later code identifies materials by name.
       if (!names.insert(material.name).second) material.name += fmt::format(" ({})", i);
       names.insert(material.name);
       material.light_group = base == no_index ? material.name : mesh_.material_names[base];
@@ -103,7 +103,8 @@ class GltfReader {
       gltf_fail(path_, "the nodes are nested too deeply",
                 fmt::format("allowed are {} levels", max_node_depth));
     }
-    // A tree by the specification. Anything else may be a cycle, or grow without bounds.
+    // Nodes form a tree by the specification. Otherwise they may form cycles or grow without
+    // bounds.
     if (visited_[static_cast<std::size_t>(number)]++ != 0) {
       gltf_fail(path_, fmt::format("node {} is reached twice", number),
                 "nodes form a tree: none is its own ancestor or has two parents");
@@ -122,7 +123,7 @@ class GltfReader {
     return static_cast<std::uint32_t>(mesh_.part_sets.size() - 1);
   }
 
-  // What a node names by its number.
+  // Object that a node references by index.
   template <class Thing>
   const Thing& at(const std::vector<Thing>& things, int number, const char* kind) const {
     const auto index = static_cast<std::size_t>(number);
@@ -177,7 +178,7 @@ class GltfReader {
     }
   }
 
-  // Where a mesh hangs.
+  // A mesh at a node.
   struct Hung {
     const tinygltf::Node& node;
     const std::vector<double>& weights;  // of its morph targets
@@ -241,12 +242,12 @@ class GltfReader {
     add_triangles(mode, indices, starts, material, poses);
   }
 
-  // Where a primitive's begin in the mesh's lists; no_index: it has none.
+  // Start of a primitive's entries in the mesh's lists; no_index: none.
   struct First {
     std::uint32_t vertex, uv, normal;
   };
 
-  // Faulty ones are an error where the shape depends on them.
+  // Faulty normals are an error if the shape depends on them.
   std::uint32_t add_normals(const tinygltf::Primitive& primitive, const Hung& hung,
                             const VertexPoses& poses, std::size_t count) {
     try {
@@ -273,7 +274,7 @@ class GltfReader {
     return first;
   }
 
-  // TEXCOORD_n of a primitive; empty: it has none.
+  // TEXCOORD_n of a primitive; empty: none.
   std::vector<Vec3> coordinates(const tinygltf::Primitive& primitive, int number,
                                 std::size_t count) {
     const auto set = primitive.attributes.find(fmt::format("TEXCOORD_{}", number));
@@ -290,8 +291,8 @@ class GltfReader {
     return uv;
   }
 
-  // Of a primitive whose material varies over it, where its places in textures and its colours
-  // begin in the mesh's; no_index: it does not vary.
+  // Start of a primitive's texture coordinates and colours in the mesh's lists; no_index: its
+  // material does not vary.
   std::uint32_t add_coordinates(const tinygltf::Primitive& primitive, std::uint32_t material,
                                 std::size_t count) {
     const auto& maps = model_.materials[material].maps;
@@ -338,7 +339,7 @@ class GltfReader {
       std::array<std::uint32_t, 3> corners{indices[i], indices[i + 1], indices[i + 2]};
       if (mode == TINYGLTF_MODE_TRIANGLE_FAN)
         corners = {indices[0], indices[i + 1], indices[i + 2]};
-      // Every second triangle of a strip runs the other way round, and so does a mirrored mesh.
+      // Every second triangle of a strip has the opposite winding, and so has a mirrored mesh.
       const bool odd = mode == TINYGLTF_MODE_TRIANGLE_STRIP && i % 2 == 1;
       if (odd != poses.mirrors(corners[0])) std::swap(corners[1], corners[2]);
       for (std::uint32_t& corner : corners) {
@@ -356,7 +357,7 @@ class GltfReader {
   Mesh mesh_;
   std::vector<int> visited_;
   std::uint32_t part_set_ = 0;
-  std::size_t without_coordinates_ = 0;  // sets that primitives lack
+  std::size_t without_coordinates_ = 0;  // coordinate sets that primitives lack
   std::unordered_map<std::string, std::uint32_t> part_numbers_;
 };
 

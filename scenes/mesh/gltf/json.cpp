@@ -19,7 +19,7 @@ using base::Blame;
 using base::Error;
 using Json = nlohmann::json;
 
-// tinygltf's JSON reader and the values recurse; a deep text ends the stack.
+// tinygltf's JSON reader and its values recurse; a deep text would overflow the stack.
 void check_depth(std::string_view json, const std::filesystem::path& path) {
   int depth = 0;
   bool in_string = false;
@@ -42,7 +42,7 @@ void check_depth(std::string_view json, const std::filesystem::path& path) {
 
 constexpr std::size_t glb_header = 20;  // of the file and of its first chunk, which is the JSON
 
-// The JSON chunk of a GLB, or the whole of a glTF.
+// The JSON chunk of a GLB, or the whole text of a glTF file.
 std::string_view json_of(std::string_view bytes, bool binary, const std::filesystem::path& path) {
   if (!binary) return bytes;
   std::uint32_t length = 0;
@@ -55,7 +55,7 @@ std::string_view json_of(std::string_view bytes, bool binary, const std::filesys
   return bytes.substr(glb_header, length);
 }
 
-// The file with another text, whose chunk ends at a multiple of four.
+// The file with its JSON text replaced, padded to a multiple of four.
 std::string with_text(std::string_view bytes, bool binary, std::size_t old_length,
                       std::string text) {
   if (!binary) return text;
@@ -91,8 +91,8 @@ class Values {
  public:
   explicit Values(const std::filesystem::path& path) : path_(path) {}
 
-  // Of a table and all below it; `keys` and `place` tell where it stands: "materials/extensions"
-  // and "materials[2].extensions".
+  // Checks a table and all tables below it. `keys` and `place` name its position:
+  // "materials/extensions" and "materials[2].extensions".
   void check(Json& table, const std::string& keys, const std::string& place) {
     for (auto entry = table.begin(); entry != table.end(); ++entry) {
       Json& value = entry.value();
@@ -102,7 +102,7 @@ class Values {
       const GltfRule* rule = rule_for(below);
       if (rule != nullptr) check_value(*rule, value, here);
       const bool is_extension = keys == "extensions" || keys.ends_with("/extensions");
-      if (is_extension && rule == nullptr) continue;  // what it holds is its own affair
+      if (is_extension && rule == nullptr) continue;  // its contents are not checked
       if (value.is_object()) check(value, below, here);
       for (std::size_t i = 0; value.is_array() && i < value.size(); ++i) {
         if (value[i].is_object()) check(value[i], below, fmt::format("{}[{}]", here, i));
@@ -192,7 +192,7 @@ class Values {
     }
     const bool is_listed =
         rule.words.empty() || rule.kind == GltfKind::Entry || is_among(rule.words, value.dump());
-    // Rounded to a float, pi / 2 is above pi / 2.
+    // pi / 2 rounded to a float exceeds pi / 2.
     constexpr double rounding = 1e-6;
     const Range range = range_of(rule);
     const bool is_in_range =
@@ -201,7 +201,7 @@ class Values {
     if (rule.otherwise.empty()) refuse(rule, value, place);
     const std::string found = described(value);
     if (rule.otherwise == gltf_rules::none) {
-      value = -1;  // tinygltf's none; what it cuts out of a large number may be an entry
+      value = -1;  // tinygltf's "none"; a truncated large number could be a valid index
       rewritten_ = true;
     }
     Note& note = notes_[&rule];
@@ -267,7 +267,7 @@ std::optional<std::string> check_gltf_text(std::string_view bytes,
   const std::string_view text = json_of(bytes, binary, path);
   check_depth(text, path);
   Json top = Json::parse(text.begin(), text.end(), nullptr, false);
-  if (!top.is_object()) return std::nullopt;  // tinygltf says where it is none
+  if (!top.is_object()) return std::nullopt;  // tinygltf reports the error
   Values values(path);
   values.check_top(top);
   values.report(warnings);

@@ -10,12 +10,11 @@
 
 namespace earthshine::scenes {
 
-// Where tinygltf finds a value of another type than it looks for, or of another length, it takes
-// the default without a word. So every value that the readers here use is held against the
-// specification: of the wrong type, or outside its range where nobody can tell what is meant, it is
-// refused by its place (base::Error, Input); else it is named in a warning, one for each kind, with
-// what is done about it. `bytes`: of a .gltf or .glb file. Gives the bytes to read instead, if
-// whole numbers stand there as "1.0": they may, and tinygltf does not know them.
+// Checks all values that are read against the specification, because tinygltf silently uses the
+// default for a value of the wrong type or length. A wrong type, or a value out of range without a
+// clear meaning, is an error that names its place (base::Error, Input). Other values out of range
+// give one warning per kind that states the replacement. `bytes`: of a .gltf or .glb file. Returns
+// corrected bytes if integers are written as "1.0", which is allowed but which tinygltf rejects.
 [[nodiscard]] std::optional<std::string> check_gltf_text(std::string_view bytes,
                                                          const std::filesystem::path& path,
                                                          std::vector<std::string>& warnings);

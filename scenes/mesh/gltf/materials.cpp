@@ -15,10 +15,10 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr double strongest = 1e12;         // emission, cd/m^2
-constexpr double blurred_through = 0.1;    // roughness from which glass is not clear
-constexpr double largest_gltf_ior = 10.0;  // as materials of a scene file
+constexpr double blurred_through = 0.1;    // roughness above which glass is not clear
+constexpr double largest_gltf_ior = 10.0;  // as for materials of a scene file
 
-// Extensions of materials that are read, or that change nothing of a still picture's default look.
+// Extensions of materials that are read, or that do not change a still picture by default.
 constexpr std::string_view read_extensions[] = {"KHR_materials_emissive_strength",
                                                 "KHR_materials_ior",
                                                 "KHR_materials_specular",
@@ -28,38 +28,38 @@ constexpr std::string_view read_extensions[] = {"KHR_materials_emissive_strength
                                                 "KHR_materials_unlit",
                                                 "KHR_materials_variants"};
 
-// What both of glTF's models come down to.
+// Common parameters of both glTF material models.
 struct Facets {
-  Rgb base{1.0};    // of the diffuse light and of metal
-  Rgb passed{1.0};  // the same where a texture is only known by its mean
+  Rgb base{1.0};    // of the diffuse light and of metals
+  Rgb passed{1.0};  // base with textures replaced by their means
   TextureSlot colour;
   double alpha = 1.0;
   double metallic = 0.0;
   double roughness = 1.0;
-  Rgb dielectric{0.04};  // reflectance at normal incidence of what is no metal
+  Rgb dielectric{0.04};  // reflectance of non-metals at normal incidence
 };
 
-// k_d, and the highlight as a lobe or a mirror.
+// Sets k_d, and the highlight as a lobe or a mirror.
 void reflect(const Facets& facets, Material& material) {
   const bool mirror = facets.roughness < mirror_roughness;
   const double plain = 1.0 - facets.metallic;
   const Rgb metal = facets.metallic * facets.passed;
   const Rgb facet = plain * facets.dielectric;
-  const double taken = base::max_component(facets.dielectric);  // from the diffuse light
+  const double taken = base::max_component(facets.dielectric);  // subtracted from the diffuse light
   if (mirror) {
     material.diffuse = plain * facets.base * (1.0 - taken);
     material.mirror = facet + metal;
     return;
   }
   const PhongLobe lobe = phong_of_ggx(facets.roughness * facets.roughness);
-  // A highlight that is hardly there takes nothing away and adds nothing.
+  // A negligible highlight changes nothing.
   const double peak = base::max_component(facet) * lobe.peak;
   const double in_lobe = lobe.albedo() / (lobe.albedo() + lobe.diffuse);
   const double kept = std::clamp(peak / least_highlight - 1.0, 0.0, 1.0);
   material.diffuse =
       facets.base * (plain * (1.0 - taken * kept * in_lobe) + facets.metallic * lobe.diffuse);
-  // What rough facets scatter evenly, where no diffuse light stands for it: a dark material's. Of
-  // dielectrics, 0.04, that is next to nothing.
+  // Diffuse part of rough facets, for dark materials without diffuse light of their own. For
+  // dielectrics (0.04) it is negligible.
   constexpr double next_to_nothing = 0.04;
   const double counts = std::clamp(taken / next_to_nothing - 1.0, 0.0, 1.0);
   const Rgb in_diffuse = facets.base * (plain * taken * (1.0 - kept * in_lobe));
@@ -70,7 +70,7 @@ void reflect(const Facets& facets, Material& material) {
   material.even_lobe = true;
 }
 
-// The share `alpha` of the surface is there.
+// Scales the material by its coverage `alpha`.
 void thin_out(double alpha, Material& material) {
   for (Rgb* part : {&material.diffuse, &material.specular, &material.mirror, &material.transmit,
                     &material.emit}) {
@@ -79,7 +79,7 @@ void thin_out(double alpha, Material& material) {
   material.transmit += Rgb(1.0 - alpha);
 }
 
-// Makes a material of one source.
+// Converts one source material.
 class Converter {
  public:
   Converter(const tinygltf::Material& source, const VertexColours& colours, GltfTextures& textures)
@@ -104,8 +104,8 @@ class Converter {
       reflect(facets, material);
     }
     pass(facets);
-    // The emissive factor is radiance, in cd/m^2 with the extension; a diffuse emitter's exitance
-    // is pi times that.
+    // The emissive factor is radiance, in cd/m^2 with the extension; the exitance of a diffuse
+    // emitter is pi times the radiance.
     const tinygltf::Value strength = extension("KHR_materials_emissive_strength");
     material.emit = base::pi * colour_of(source_.emissiveFactor, 0.0) *
                     in_range(number_of(strength, "emissiveStrength", 1.0), strongest);
@@ -123,7 +123,7 @@ class Converter {
 
   void lack(std::string what) { made_.lacks.push_back(std::move(what)); }
 
-  // Of a texture whose mean alone is used; without one 1.
+  // Mean of a texture that is used by its mean only; 1 without a texture.
   glm::dvec4 mean_of(const TextureSlot& slot, bool is_srgb, const char* what) {
     const TextureMap map = textures_.read(slot, is_srgb);
     if (!map.texture) return glm::dvec4(1.0);
@@ -142,7 +142,7 @@ class Converter {
     facets.roughness = in_range(pbr.roughnessFactor) * mean.g;
     facets.metallic = in_range(pbr.metallicFactor) * mean.b;
     const double ior = number_of(extension("KHR_materials_ior"), "ior", 1.5);
-    // An index of 0 stands for a mirror by the extension's text.
+    // By the extension's text, an index of 0 means a mirror.
     const double root = ior <= 0.0 ? 1.0 : (ior - 1.0) / (ior + 1.0);
     const tinygltf::Value specular = extension("KHR_materials_specular");
     const Rgb tint = colour_of(numbers_of(specular, "specularColorFactor"), 1.0, 1e3) *
@@ -168,7 +168,7 @@ class Converter {
     return facets;
   }
 
-  // The maps of the material; what only their means go into comes out of `facets`.
+  // The material's texture maps; parameters that use texture means are set in `facets`.
   void texture(Facets& facets) {
     MaterialMaps maps;
     maps.by_vertex = colours_.vary;
@@ -198,7 +198,7 @@ class Converter {
     }
   }
 
-  // What goes through.
+  // Transmission.
   void pass(const Facets& facets) {
     Material& material = made_.material;
     const tinygltf::Value passing = extension("KHR_materials_transmission");
@@ -209,7 +209,7 @@ class Converter {
     material.transmit = passed * (1.0 - facets.metallic) * facets.passed *
                         (1.0 - base::max_component(facets.dielectric));
     material.diffuse *= 1.0 - passed;
-    // Without a thickness it is a sheet, and sheets do not bend light.
+    // Without a thickness it is a sheet, and sheets do not refract.
     const tinygltf::Value volume = extension("KHR_materials_volume");
     if (number_of(volume, "thicknessFactor", 0.0) > 0.0) {
       material.ior =

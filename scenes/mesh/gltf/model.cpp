@@ -19,24 +19,24 @@ namespace {
 using base::Blame;
 using base::Error;
 
-// What tinygltf's file access is replaced with: paths stay in the folders, sizes are bounded.
+// Replaces tinygltf's file access: confines paths to the folders and limits sizes.
 struct FileAccess {
   std::filesystem::path path;
   std::span<const std::filesystem::path> folders;
   std::vector<std::filesystem::path> found;
-  std::string refused;  // why a path was, in words clearer than tinygltf's "file not found"
+  std::string refused;  // why a path was refused; clearer than tinygltf's "file not found"
 
   [[nodiscard]] std::filesystem::path inside(const std::string& named) const {
     return confined_path(path.parent_path(), named, folders, base::Location{path.string()});
   }
 };
 
-// tinygltf tries a name behind each of its search folders; ours are "" and ".".
+// tinygltf prepends each of its search folders; ours are "" and ".".
 std::string plain_name(const std::string& tried) {
   return tried.starts_with("./") ? tried.substr(2) : tried;
 }
 
-// Read where a material needs them; tinygltf does without a missing image.
+// Images are read when a material needs them; tinygltf accepts a missing image.
 bool is_image(const std::string& name) {
   constexpr std::string_view endings[] = {".png",  ".jpg", ".jpeg", ".webp",
                                           ".ktx2", ".dds", ".basis"};
@@ -75,8 +75,8 @@ bool write_no_file(std::string*, const std::string&, const std::vector<unsigned 
   return false;
 }
 
-// tinygltf 2.9 takes one function more than 2.7, and all of them or none: the size of a file, which
-// it compares with a limit before the reading. Ours is checked in read_file.
+// tinygltf 2.9 requires one more callback than 2.7, the file size, which it compares with a limit
+// before reading. read_file checks the size here.
 template <class Callbacks>
 Callbacks file_callbacks(FileAccess& files) {
   Callbacks callbacks{};
@@ -94,14 +94,14 @@ Callbacks file_callbacks(FileAccess& files) {
   return callbacks;
 }
 
-// Bytes of a picture inside the file or its buffers, kept as they are.
+// Stores the bytes of an embedded picture without decoding.
 bool keep_image(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
                 const unsigned char* bytes, int size, void*) {
   if (size > 0) image->image.assign(bytes, bytes + size);
   return true;
 }
 
-// tinygltf answers in several lines.
+// tinygltf's messages have several lines.
 std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   while (!text.empty() && text.back() == ' ') text.pop_back();
@@ -110,7 +110,7 @@ std::string one_line(std::string text) {
 }
 
 [[noreturn]] void refuse_unsound(const std::filesystem::path& path, const std::string& problem) {
-  // The JSON parser's message names the library and its exceptions.
+  // The JSON parser's message contains names of the library and its exceptions.
   const std::size_t place = problem.find("at line "), end = problem.find(':', place);
   if (problem.find("parse_error") != std::string::npos && end != std::string::npos) {
     gltf_fail(path, fmt::format("not glTF: no JSON {}", problem.substr(place, end - place)),
@@ -121,13 +121,13 @@ std::string one_line(std::string text) {
 
 constexpr std::string_view of_textures[] = {"KHR_texture_basisu", "EXT_texture_webp",
                                             "EXT_texture_avif"};
-// Those that the readers here look into.
+// Extensions that are read.
 constexpr std::string_view known[] = {
     "KHR_mesh_quantization",      "KHR_lights_punctual",    "KHR_materials_emissive_strength",
     "KHR_materials_ior",          "KHR_materials_specular", "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_transmission", "KHR_materials_volume",   "KHR_materials_unlit",
     "KHR_texture_transform",      "EXT_mesh_gpu_instancing"};
-// Those that change nothing of what is there.
+// Extensions that do not change the picture.
 constexpr std::string_view harmless[] = {"KHR_materials_variants", "KHR_xmp", "KHR_xmp_json_ld",
                                          "KHR_animation_pointer", "MSFT_lod"};
 constexpr std::string_view compressions[] = {"KHR_draco_mesh_compression",
@@ -138,7 +138,7 @@ bool among(const std::string& name, const std::string_view (&names)[N]) {
   return std::find(std::begin(names), std::end(names), name) != std::end(names);
 }
 
-// glTF-Transform's commands (gltf-transform.dev, in the npm registry).
+// Commands of glTF-Transform (gltf-transform.dev, in the npm registry).
 std::string remedy_for(const std::string& extension) {
   constexpr const char* run = "npx @gltf-transform/cli";
   if (among(extension, compressions)) {
@@ -147,7 +147,7 @@ std::string remedy_for(const std::string& extension) {
   return "Export it without";
 }
 
-// Whether an attribute of a vertex is read, or is of no use without what is read.
+// Whether a vertex attribute is read, or is useless without an attribute that is read.
 bool is_read(const std::string& name, const tinygltf::Primitive& primitive) {
   const auto has = [&](const char* other) { return primitive.attributes.count(other) > 0; };
   if (name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_")) {
@@ -156,7 +156,7 @@ bool is_read(const std::string& name, const tinygltf::Primitive& primitive) {
   return name == "POSITION" || name == "COLOR_0";
 }
 
-// The numbers of the sets of coordinates that the material of a primitive reads.
+// Whether an attribute is a set of texture coordinates that the primitive's material reads.
 bool is_coordinates(const std::string& name, const CoordinateSets& sets) {
   const auto is = [&](const std::optional<int>& set) {
     return set && name == fmt::format("TEXCOORD_{}", *set);
@@ -164,8 +164,8 @@ bool is_coordinates(const std::string& name, const CoordinateSets& sets) {
   return is(sets.first) || is(sets.second);
 }
 
-// What nothing here reads, and what of that would change the picture: vertex attributes, morph
-// targets of other attributes, lights, cameras, animations, extensions.
+// Counts unread contents, and those that would change the picture: vertex attributes, morph targets
+// of other attributes, lights, cameras, animations, extensions.
 void count_unused(GltfModel& model) {
   const tinygltf::Model& file = model.file;
   const auto count = [&](const std::string& what, std::size_t number) {
@@ -211,8 +211,8 @@ void count_unused(GltfModel& model) {
   }
 }
 
-// Throws base::Error (Input) where the numbers of a mesh are there in compressed form alone: an
-// extension that the file does not call required may be so all the same.
+// Throws base::Error (Input) if a mesh exists in compressed form only. This occurs even in files
+// that do not list the extension as required.
 void check_compression(const tinygltf::Model& model, bool loaded,
                        const std::filesystem::path& path) {
   const auto refuse = [&](const std::string& extension) {
@@ -222,7 +222,7 @@ void check_compression(const tinygltf::Model& model, bool loaded,
         "meshes are read uncompressed", remedy_for(extension));
   };
   for (const std::string& extension : model.extensionsUsed) {
-    // A buffer without data, which the plain form would have, is no sound file to the library.
+    // tinygltf rejects a buffer without data, which the uncompressed form would have.
     if (!loaded && among(extension, compressions)) refuse(extension);
   }
   for (const tinygltf::Mesh& mesh : model.meshes) {
@@ -247,8 +247,8 @@ void check_compression(const tinygltf::Model& model, bool loaded,
   }
 }
 
-// Throws base::Error (Input) for an extension that the file cannot be read without, with what
-// turns it into a file without. Those that concern textures alone are no hindrance.
+// Throws base::Error (Input) for a required extension that is not supported, and names a tool that
+// removes it. Extensions of textures only are accepted.
 void check_required_extensions(const tinygltf::Model& model, const std::filesystem::path& path) {
   for (const std::string& extension : model.extensionsRequired) {
     if (among(extension, of_textures) || among(extension, known)) continue;

@@ -6,11 +6,11 @@
 
 namespace earthshine::scenes {
 
-// Lamps and cameras at the origin, shining and looking along -z, as glTF has them; their nodes say
-// where they hang. What Lamp and Camera have no word for is counted in model.unused.
+// Reads lamps and cameras at the origin, directed along -z as in glTF; their nodes position them.
+// Properties that Lamp and Camera lack are counted in model.unused.
 void read_punctual(GltfModel& model);
 
-// The number of the lamp that hangs on a node; negative: none.
+// Index of the lamp at a node; negative: none.
 [[nodiscard]] int lamp_on(const tinygltf::Node& node);
 
 }  // namespace earthshine::scenes

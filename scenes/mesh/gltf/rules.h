@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the values of a glTF file may be: a table of glTF 2.0 and of the extensions that are read.
+// Allowed values of a glTF file: a table from glTF 2.0 and from the extensions that are read.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,14 @@ namespace earthshine::scenes {
 enum class GltfKind { Number, Whole, Entry, Word, Truth, Table, Tables, Texture };
 
 struct GltfRule {
-  std::string_view path;  // keys from the top, joined by '/', numbers in lists left out; '*': any
-                          // beginning
+  std::string_view path;  // keys from the top, joined by '/', without list indices; '*': any prefix
   GltfKind kind;
   Range range = any_number;  // of each number
   std::size_t count = 0;     // of numbers; 0: no list
-  // What is done with numbers outside the range; empty: they are refused.
+  // Replacement of numbers out of range, for the warning; empty: an error.
   std::string_view otherwise = {};
-  // Word: the words; Whole: the numbers, where they are no range; Entry: the list at the top whose
-  // entry it is.
+  // Word: the words; Whole: the numbers, if they are not a range; Entry: the top-level list that
+  // the index refers to.
   std::string_view words = {};
 };
 
@@ -30,7 +29,7 @@ inline constexpr std::size_t any_count = SIZE_MAX;  // a list, or a table, of an
 namespace gltf_rules {
 
 using enum GltfKind;
-constexpr Range whole{0.0, 2147483647.0};  // tinygltf keeps 32 bits
+constexpr Range whole{0.0, 2147483647.0};  // tinygltf stores 32 bits
 constexpr Range length{-1e15, 1e15};
 constexpr Range half_angle{0.0, base::pi / 2.0};
 constexpr std::string_view none = "taken as none", brought = "the nearest allowed is taken",
@@ -155,7 +154,7 @@ constexpr GltfRule all[] = {
     {"extensions/KHR_lights_punctual/lights/spot/innerConeAngle", Number, half_angle, 0, brought},
     {"extensions/KHR_lights_punctual/lights/spot/outerConeAngle", Number, half_angle, 0, brought}};
 
-// Of a table that names a texture.
+// Rules for a table that references a texture.
 constexpr GltfRule of_texture[] = {{"index", Whole, whole, 0, none}, {"texCoord", Whole, whole}};
 
 }  // namespace gltf_rules

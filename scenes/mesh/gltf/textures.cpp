@@ -15,7 +15,7 @@ Wrap wrap_of(int mode) {
   return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::Mirror : Wrap::Repeat;
 }
 
-// "my%20wood.png" is "my wood.png".
+// Decodes percent encoding: "my%20wood.png" becomes "my wood.png".
 std::string decoded(const std::string& uri) {
   std::string name;
   for (std::size_t k = 0; k < uri.size(); ++k) {
@@ -36,8 +36,8 @@ std::string decoded(const std::string& uri) {
   return name;
 }
 
-// KHR_texture_transform: scaled, turned counter-clockwise as one looks at the picture (its v runs
-// down), shifted.
+// KHR_texture_transform: scale, counter-clockwise rotation as seen on the picture (whose v points
+// down), offset.
 TextureTransform transform_of(const tinygltf::Value& table) {
   const auto two = [&](const char* key, double otherwise) {
     const std::vector<double> numbers = numbers_of(table, key);
@@ -119,7 +119,7 @@ void GltfTextures::prepare(std::span<const WantedTexture> wanted) {
     if (known) continue;
     try {
       picture.bytes = bytes_of(*image);
-    } catch (const base::Error&) {  // said by read()
+    } catch (const base::Error&) {  // reported by read()
       continue;
     }
     pictures.push_back(std::move(picture));

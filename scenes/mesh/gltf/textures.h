@@ -19,17 +19,17 @@
 
 namespace earthshine::scenes {
 
-// A texture as a material names it.
+// Texture reference of a material.
 struct TextureSlot {
   int index = -1;       // -1: none
   int coordinates = 0;  // TEXCOORD_n
   tinygltf::Value transform;
 };
 [[nodiscard]] TextureSlot slot_of(const tinygltf::TextureInfo& info);
-// `key` of an extension's table.
+// Reads `key` of an extension's table.
 [[nodiscard]] TextureSlot slot_of(const tinygltf::Value& table, const char* key);
 
-// Opens a picture that a file names, and gives its bytes. Throws base::Error (Input).
+// Reads a picture that a file references. Throws base::Error (Input).
 using OpenPicture = std::function<std::string(const std::string& uri)>;
 
 struct WantedTexture {
@@ -43,10 +43,10 @@ class GltfTextures {
                std::vector<std::string>& warnings)
       : model_(model), path_(std::move(path)), open_(std::move(open)), shelf_(warnings) {}
 
-  // Makes those that read() will ask for, on all threads.
+  // Loads the textures that read() will need, on all threads.
   void prepare(std::span<const WantedTexture> wanted);
 
-  // Without a texture where the slot has none or it cannot be read (a warning then).
+  // No texture if the slot has none, or if it cannot be read (with a warning).
   [[nodiscard]] TextureMap read(const TextureSlot& slot, bool is_srgb);
 
  private:
@@ -60,15 +60,15 @@ class GltfTextures {
   PictureShelf shelf_;
 };
 
-// Values of glTF extensions, which may be of any type or missing. Only the files that own tinygltf
+// Values of glTF extensions, which may be of any type or missing. Only files that own tinygltf
 // include this.
 
-// What is no number, or none between 0 and `most`, is brought there.
+// Clamps to [0, most]; 0 if not finite.
 [[nodiscard]] inline double in_range(double x, double most = 1.0) {
   return std::isfinite(x) ? std::clamp(x, 0.0, most) : 0.0;
 }
 
-// The first three, each in [0, most].
+// First three values, each clamped to [0, most].
 [[nodiscard]] inline Rgb colour_of(const std::vector<double>& values, double otherwise,
                                    double most = 1.0) {
   if (values.size() < 3) return Rgb(otherwise);

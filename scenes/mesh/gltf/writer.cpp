@@ -13,14 +13,14 @@
 namespace earthshine::scenes {
 namespace {
 
-// Appends values as a buffer view and an accessor; gives the accessor's number.
+// Appends values as a buffer view and an accessor; returns the accessor's index.
 template <class Number>
 int add_accessor(tinygltf::Model& model, const std::vector<Number>& values, int components,
                  int component_type, int target) {
   std::vector<unsigned char>& data = model.buffers.front().data;
   tinygltf::BufferView view;
   view.buffer = 0;
-  view.byteOffset = data.size();  // numbers are four bytes wide: always aligned
+  view.byteOffset = data.size();  // all values have four bytes: always aligned
   view.byteLength = values.size() * sizeof(Number);
   view.target = target;
   data.resize(data.size() + view.byteLength);
@@ -35,7 +35,7 @@ int add_accessor(tinygltf::Model& model, const std::vector<Number>& values, int 
   return static_cast<int>(model.accessors.size() - 1);
 }
 
-// glTF demands the bounds of positions, as the very numbers of the buffer.
+// glTF requires bounds of positions, equal to values in the buffer.
 void add_bounds(tinygltf::Accessor& accessor, const std::vector<float>& positions) {
   accessor.minValues.assign(3, std::numeric_limits<double>::infinity());
   accessor.maxValues.assign(3, -std::numeric_limits<double>::infinity());
@@ -72,7 +72,7 @@ void add_part(tinygltf::Model& model, const GltfPart& part) {
 tinygltf::Material unlit_material() {
   tinygltf::Material material;
   material.name = "light as computed";
-  // What viewers that do not know the extension fall back to, as it advises.
+  // Fallback for viewers without the extension, as it recommends.
   material.pbrMetallicRoughness.metallicFactor = 0.0;
   material.pbrMetallicRoughness.roughnessFactor = 0.9;
   material.extensions["KHR_materials_unlit"] = tinygltf::Value(tinygltf::Value::Object());
@@ -106,7 +106,7 @@ std::string make_glb(const std::string& name, std::span<const GltfPart> parts,
   for (const GltfPart& part : parts) {
     bytes += 4 * (part.positions.size() + part.colours.size() + part.indices.size());
   }
-  // The lengths in the file are 32 bits; the description in front of the numbers takes its share.
+  // Lengths in the file have 32 bits; the JSON text needs some of them.
   if (bytes > (std::size_t{4} << 30) - (std::size_t{64} << 20)) {
     throw base::Error(base::Blame::Work, "GLB",
                       "the mesh is larger than 4 GiB, which GLB cannot hold", {},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coloured triangles as a GLB file for other people's viewers: glTF 2.0 with vertex colours and
-// KHR_materials_unlit, so that the colours show as they are.
+// Writes coloured triangles as a GLB file for common viewers: glTF 2.0 with vertex colours and
+// KHR_materials_unlit, so that viewers show the colours unchanged.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@
 
 namespace earthshine::scenes {
 
-// Asset.generator of these files: who reads one knows that its root node has turned it.
+// Asset.generator of these files. The reader uses it to detect the rotation of the root node.
 inline constexpr const char* own_generator = "earthshine";
 
-// One node and its mesh. A part without triangles is left out.
+// One node and its mesh. Parts without triangles are omitted.
 struct GltfPart {
   std::string name;
   std::vector<float> positions;        // x, y, z per vertex, m
@@ -25,9 +25,9 @@ struct GltfPart {
 
 using GltfNote = std::pair<std::string, std::variant<std::string, double>>;
 
-// The bytes of the file. A scene's z axis is up and glTF's y: the root node, of that name, turns
-// the one into the other and carries the notes as its extras. Only fronts are shown. Throws
-// base::Error (Work) above 4 GiB, which is as far as GLB goes.
+// The bytes of the file. The scene's z axis is up, glTF's y axis is: the root node, called `name`,
+// rotates one to the other and has the notes as its extras. Only fronts are visible. Throws
+// base::Error (Work) above 4 GiB, the limit of GLB.
 [[nodiscard]] std::string make_glb(const std::string& name, std::span<const GltfPart> parts,
                                    std::span<const GltfNote> notes);
 

@@ -46,8 +46,8 @@ bool covered(const scenes::Scene& scene, const Vec3& point) {
 }
 
 TEST(ClosedBodies, ABallCoversWhatItsPolygonsEnclose) {
-  // A ball of n segments lies between the balls of radius 1 and cos(pi / n)^2: the polygons'
-  // vertices lie on the round surface, their middles within that.
+  // A ball of n segments lies between the balls of radius 1 and cos(pi / n)^2: the vertices are on
+  // the sphere, the middles of the polygons inside.
   tests::SceneBuilder builder;
   constexpr int segments = 24;
   add_mesh(builder, builder.material(grey(0.5)), scenes::make_sphere({1, 2, 3}, 1.0, segments));
@@ -63,7 +63,7 @@ TEST(ClosedBodies, ABallCoversWhatItsPolygonsEnclose) {
     in += r < inner ? 1 : 0;
   }
   EXPECT_GT(in, 100);
-  // Seen along an axis through the poles and along seams of its polygons.
+  // Projected along an axis through the poles and along edges of its polygons.
   EXPECT_TRUE(covered(builder.scene, {1, 2, 3}));
   EXPECT_TRUE(covered(builder.scene, {1, 2, 3.5}));
   EXPECT_TRUE(covered(builder.scene, {1.5, 2, 3}));
@@ -100,15 +100,15 @@ TEST(ClosedBodies, WhatIsOutsideARoomIsCoveredWhereAllLightIsInRooms) {
   builder.scene.lamps.push_back(lamp);
   EXPECT_FALSE(covered(builder.scene, Vec3(0.25)));
   EXPECT_TRUE(covered(builder.scene, {0.5, 0.5, -1e-6}));
-  builder.scene.lamps.back().position = Vec3(0.5, 0.5, -2.0);  // a second world, lit too
+  builder.scene.lamps.back().position = Vec3(0.5, 0.5, -2.0);  // a second lit region
   EXPECT_FALSE(covered(builder.scene, {0.5, 0.5, -1e-6}));
   builder.scene.lamps.back().position = Vec3(0.5);
   builder.quad(builder.material(grey(0.5, 1.0)), {4, 0, 0}, {5, 0, 0}, {5, 1, 0}, {4, 1, 0});
-  EXPECT_FALSE(covered(builder.scene, {0.5, 0.5, -1e-6}));  // lit by what shines out there
+  EXPECT_FALSE(covered(builder.scene, {0.5, 0.5, -1e-6}));  // lit from outside
 }
 
 TEST(ClosedBodies, ABoxInTheCornerOfARoomIsABodyOfItsOwn) {
-  // It shares an edge of the room and the corner's point with it.
+  // It shares an edge with the room, and the vertex at the point.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(grey(0.5));
   builder.room({m, m, m, m, m, m});
@@ -127,12 +127,12 @@ TEST(ClosedBodies, ARoomWithinAShellIsOpenAndItsWallsAreNot) {
   add_mesh(builder, m, scenes::make_box({0.2, 0.2, -0.05}, {0.4, 0.4, 0.3}));
   EXPECT_FALSE(covered(builder.scene, Vec3(0.5)));
   EXPECT_TRUE(covered(builder.scene, {0.5, 0.5, -0.05}));   // within the wall
-  EXPECT_TRUE(covered(builder.scene, {0.3, 0.3, 0.1}));     // in the box that stands in the room
+  EXPECT_TRUE(covered(builder.scene, {0.3, 0.3, 0.1}));     // in the box inside the room
   EXPECT_FALSE(covered(builder.scene, {0.5, 0.5, -0.15}));  // outside
 }
 
 TEST(ClosedBodies, ABlockWithoutABottomIsStoppedUpByTheFloorThatItStandsOn) {
-  // A floor of two quads that meet under the block, and a prism of walls and a roof upon it.
+  // A floor of two quads that meet under the block, and a prism of walls and a roof on it.
   const auto covers = [](double lift, double floor_to, bool sheet) {
     tests::SceneBuilder builder;
     const std::uint32_t m = builder.material(grey(0.5));
@@ -152,9 +152,9 @@ TEST(ClosedBodies, ABlockWithoutABottomIsStoppedUpByTheFloorThatItStandsOn) {
            !covered(builder.scene, {2.9, 2.9, 1e-9}) && !covered(builder.scene, {2.0, 2.0, 1.1});
   };
   EXPECT_TRUE(covers(0.0, 4.0, false));
-  EXPECT_FALSE(covers(1e-3, 4.0, false));  // light comes in by the gap
-  EXPECT_FALSE(covers(0.0, 2.5, false));   // its corner stands out over the edge
-  EXPECT_FALSE(covers(0.0, 4.0, true));    // a sheet's other side is no floor
+  EXPECT_FALSE(covers(1e-3, 4.0, false));  // light enters through the gap
+  EXPECT_FALSE(covers(0.0, 2.5, false));   // its corner extends beyond the edge
+  EXPECT_FALSE(covers(0.0, 4.0, true));    // the other side of a sheet is no floor
 }
 
 TEST(ClosedBodies, OnlyOpaqueClosedConsistentSurfacesCover) {
@@ -169,13 +169,13 @@ TEST(ClosedBodies, OnlyOpaqueClosedConsistentSurfacesCover) {
   EXPECT_FALSE(covers([](tests::SceneBuilder& b) { b.scene.materials[0].two_sided = true; }));
   EXPECT_FALSE(covers([](tests::SceneBuilder& b) { b.scene.materials[0].transmit = Rgb(0.5); }));
   EXPECT_FALSE(covers([](tests::SceneBuilder& b) { b.scene.triangles.pop_back(); }));
-  EXPECT_FALSE(covers([](tests::SceneBuilder& b) {  // one face turned over
+  EXPECT_FALSE(covers([](tests::SceneBuilder& b) {  // one reversed face
     for (std::size_t t : {10, 11}) {
       std::swap(b.scene.triangles[t].vertex[1], b.scene.triangles[t].vertex[2]);
     }
   }));
   EXPECT_FALSE(covers([](tests::SceneBuilder& b) { b.scene.vertices[0] += Vec3(1e-3); }));
-  EXPECT_FALSE(covers([](tests::SceneBuilder& b) {  // somebody lives there
+  EXPECT_FALSE(covers([](tests::SceneBuilder& b) {  // a lamp inside
     scenes::Lamp lamp;
     lamp.position = Vec3(0.5);
     b.scene.lamps.push_back(lamp);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Patches that bodies cover in part or wholly.
+// Patches that bodies cover partly or completely.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ FormFactors open_factors(const scenes::Scene& scene, const scenes::RayQuery& que
 }
 
 TEST(CoveredParts, TheShareLeftOpenIsTheAreaThatTheBoxLeaves) {
-  // A floor of one patch, 1 m2, and a box over 0.3 x 0.4 m of it, standing and sunk. 1024 points,
+  // A floor of one patch, 1 m2, and a box on 0.3 x 0.4 m of it, standing and sunk. 1024 points,
   // binomial at most: 4 sqrt(0.12 * 0.88 / 1024).
   for (const double low : {0.0, -0.2}) {
     tests::SceneBuilder builder;
@@ -79,12 +79,12 @@ TEST(CoveredParts, AWhollyCoveredPatchHasNoRowAndNoColumn) {
     EXPECT_EQ(f.row_start[i], f.row_start[i + 1]);
     EXPECT_EQ(f.lost[i], 1.0);
   }
-  EXPECT_NEAR(closed_m2, 0.25, 1e-12);  // cells of 1/8 m end where the box does
+  EXPECT_NEAR(closed_m2, 0.25, 1e-12);  // cells of 1/8 m end at the box
 }
 
 TEST(CoveredParts, AHitOnAPatchThatTakesNoPartIsLostAndTheRowStaysClosed) {
-  // A room of six patches, of which the last is said to be covered: 0.2 of what each other sends
-  // goes to black backs instead.
+  // A room of six patches, of which the last one is marked as covered: 0.2 of each other patch's
+  // light goes to black backs instead.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(grey(0.5));
   builder.room({m, m, m, m, m, m});
@@ -119,8 +119,8 @@ Solution sunlit_floor(double edge_m) {
 }
 
 TEST(CoveredParts, DirectLightIsTheMeanOverWhatIsOpen) {
-  // No shadow falls beside the box: the floor has 1000 lx wherever it is open, in whatever patches,
-  // and all that falls on 1 m2 lands once, but for the noise of the share.
+  // The Sun overhead casts no shadow beside the box: the open floor has 1000 lx, for any patches,
+  // and all light on 1 m2 lands once, except for the noise of the open share.
   for (const double edge_m : {2.0, 0.2, 0.07}) {
     const Solution s = sunlit_floor(edge_m);
     EXPECT_NEAR(s.report.groups[0].landed_lm.g, 1000.0, 4e3 * std::sqrt(0.12 * 0.88 / 1024));

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The error that scenes/effects/culling states for leaving interreflection out, against solved
-// scenes:
+// The error that scenes/effects/culling states without interreflection, against solved scenes:
 //   B - B0 = sum over k >= 1 of (rho F)^k B0, and |F| <= 1 in the area-weighted square mean, since
-//   rows of F sum to 1 at most, and columns, weighed by area, too (Schur's test). So |B - B0| <=
+//   rows of F sum to at most 1, and so do area-weighted columns (Schur's test). Hence |B - B0| <=
 //   (r + r^2 + ...) |B0| = r / (1 - r) |B0|.
 #include <gtest/gtest.h>
 
@@ -15,8 +14,8 @@
 namespace earthshine::radiosity {
 namespace {
 
-// A room with up to eight boxes, one per octant, each wall and box with a reflectance of its own,
-// and two point lamps in groups of their own.
+// A room with up to eight boxes, one per octant; walls and boxes have different reflectances. Two
+// point lamps in separate groups.
 scenes::Scene random_room(std::uint64_t number, double most) {
   base::Rng random(base::Key(number, base::Stream::Test, 1));
   tests::SceneBuilder builder;
@@ -51,7 +50,7 @@ TEST(CullingBound, NoSolvedSceneExceedsIt) {
     const double most = std::pow(10.0, -4.0 + 3.98 * double(number) / 23.0);  // 1e-4 .. 0.95
     const scenes::Scene scene = random_room(number, most);
     const tests::Prepared prepared(scene);
-    // So large an error that the bound alone decides.
+    // An error so large that only the bound decides.
     scenes::LightGroups groups = prepared.groups;
     scenes::Effects effects = prepared.effects;
     const auto culled = scenes::cull_effects(scene, {}, 1e9, {}, groups, effects);
@@ -78,12 +77,12 @@ TEST(CullingBound, NoSolvedSceneExceedsIt) {
       tightest = std::max(tightest, error / culled[0].error);
     }
   }
-  // And it is no idle bound: some scene comes near it.
+  // The bound is tight: some scene nearly reaches it.
   EXPECT_GT(tightest, 0.3);
 }
 
-// A closed room of one reflectance in even light is the worst case: B = B0 / (1 - r) there. Its
-// walls, lit by a lamp in the middle, are lit unevenly, and still reach nine tenths of the bound.
+// A closed room with one reflectance and uniform light is the worst case: B = B0 / (1 - r). With
+// walls lit non-uniformly by a lamp in the middle it still reaches nine tenths of the bound.
 TEST(CullingBound, AClosedRoomOfOneReflectanceComesNearIt) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.2));

@@ -21,13 +21,14 @@ enum class Wall { Sheet, Slanted, Pierces, ThinBox, BackToBack };
 constexpr Wall walls[] = {Wall::Sheet, Wall::Slanted, Wall::Pierces, Wall::ThinBox,
                           Wall::BackToBack};
 
-// The room [0,1]^3 in two: a wall that meets y = 0 at x = 0.37 and y = 1 there too, or at 0.51.
+// The room [0,1]^3 divided by a wall that meets y = 0 at x = 0.37, and y = 1 also there, or at
+// 0.51.
 tests::SceneBuilder two_rooms(Wall wall, double diffuse = 0.6, double emit = 0.0) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(grey(diffuse, emit));
   builder.room({m, m, m, m, m, m});
   const double at = 0.37, end = wall == Wall::Slanted ? 0.51 : at;
-  // What sticks out of the room is outside, and dark.
+  // Parts of the wall beyond the room are outside, and dark.
   const double low = wall == Wall::Pierces ? -0.1 : 0.0, high = 1.0 - low;
   scenes::Material sheet = grey(diffuse, emit);
   sheet.two_sided = wall != Wall::BackToBack;
@@ -66,7 +67,7 @@ double middle_x(const Patches& patches, std::uint32_t i) {
   return 0.25 * (c[0].x + c[1].x + c[2].x + c[3].x);
 }
 
-// No path leads from the lamp into the other room: nothing is there, not just little.
+// No path leads from the lamp into the other room: its light is exactly 0.
 TEST(WallTraces, ARoomBehindAThinWallIsDark) {
   for (const Wall wall : walls) {
     tests::SceneBuilder builder = two_rooms(wall);
@@ -92,7 +93,7 @@ TEST(WallTraces, ARoomBehindAThinWallIsDark) {
   }
 }
 
-// Two furnaces side by side: all that emits 1 - rho is at 1, whatever stands where.
+// Two adjacent furnaces: with emission 1 - rho everywhere, B = 1 for any geometry.
 TEST(WallTraces, FurnacesOnBothSidesStayUniform) {
   for (const Wall wall : walls) {
     const double gap = wall == Wall::ThinBox ? 0.01 : wall == Wall::BackToBack ? 0.001 : -1.0;
@@ -117,8 +118,8 @@ Patches parted(const scenes::Scene& scene, double edge_m) {
   return part_along(patches, find_wall_traces(scene, patches));
 }
 
-// A point of a part is found in it, its corners enclose the area it is said to have, and the parts
-// of a facet add up to it: on quads and triangles, cut again at random.
+// A point of a part is found in the part, its corners enclose its stated area, and the parts of a
+// facet add up to the facet: on quads and triangles, after random splits.
 TEST(WallTraces, PartsTileTheirFacets) {
   tests::SceneBuilder builder = two_rooms(Wall::Slanted);
   scenes::Scene& scene = builder.scene;
@@ -163,8 +164,8 @@ TEST(WallTraces, PartsComeBackFromTheirLayout) {
   EXPECT_THROW((void)rebuild_patches(scene, layout_of(patches)), std::invalid_argument);
 }
 
-// What is under a body gets no light, so its outline parts no cell: nor does what runs along the
-// edge of a facet, stands off it, or lets light through.
+// The area under a body gets no light, so that its outline divides no cell. Neither does a wall
+// that runs along a facet's edge, has a gap to it, or transmits light.
 TEST(WallTraces, OnlyWallsWithLightOnBothSidesPartCells) {
   const auto count = [](tests::SceneBuilder& builder) {
     return parted(builder.scene, 0.3).count() - subdivide(builder.scene, 0.3).count();
@@ -189,7 +190,7 @@ TEST(WallTraces, OnlyWallsWithLightOnBothSidesPartCells) {
   EXPECT_EQ(count(glass), 0U);
 }
 
-// A wall of many pieces, as a finely cut one has them, parts cells as one of one piece does.
+// A wall of many pieces, as in a finely divided mesh, divides cells like a wall of one piece.
 TEST(WallTraces, PiecesOfOneWallAreOneWall) {
   const auto cells = [](int pieces) {
     tests::SceneBuilder builder;
@@ -214,8 +215,8 @@ TEST(WallTraces, PiecesOfOneWallAreOneWall) {
   EXPECT_EQ(cells(200), 8U);
 }
 
-// A line through a corner of a part leaves that corner twice. A part with nothing between three
-// corners has no area: it was given rays from nowhere.
+// A line through a corner of a part crosses the border twice there. A part with collinear corners
+// has no area and would cast rays from nowhere.
 TEST(PartedCell, WallsThroughCornersLeavePartsWithArea) {
   Facet facet;
   facet.parallelogram = true;
@@ -231,7 +232,7 @@ TEST(PartedCell, WallsThroughCornersLeavePartsWithArea) {
         std::vector{wall(c, a), wall(middle, d), wall({0.25, 0.25}, d), wall(b, {0.25, 0.25})},
         std::vector{wall({0.5, 0}, {0.5, 1}), wall(a, middle), wall(middle, c), wall(d, b)}}) {
     const PartedCell parted = part_cell(facet, {}, walls);
-    ASSERT_GT(parted.outlines.size(), walls.size());  // each parts what is there
+    ASSERT_GT(parted.outlines.size(), walls.size());  // each divides the remaining area
     double all = 0.0;
     for (const Outline& o : parted.outlines) {
       const auto twice = [&](std::size_t k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A light is called hidden only if no light of it can reach a camera.
+// A light counts as hidden only if none of its light can reach a camera.
 #include "radiosity/bodies/walls.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ scenes::Lamp lamp_at(const Vec3& position, LampKind kind = LampKind::Point) {
   return lamp;
 }
 
-// The room [0,1]^3, seen from inside; `what` may change its faces' material.
+// The room [0,1]^3, seen from inside; `what` may change the material of its faces.
 tests::SceneBuilder room(const scenes::Material& wall, const scenes::Material& lid) {
   tests::SceneBuilder builder;
   const std::uint32_t w = builder.material(wall), l = builder.material(lid);
@@ -52,13 +52,13 @@ TEST(Walls, ALampInAClosedBoxIsHiddenFromOutsideAndTheOtherWayRound) {
   EXPECT_TRUE(lamp_is_hidden(builder, lamp_at(outside), camera_at(inside)));
   EXPECT_FALSE(lamp_is_hidden(builder, lamp_at(inside), camera_at({0.1, 0.1, 0.1})));
   EXPECT_FALSE(lamp_is_hidden(builder, lamp_at({0.5, 0.5, -2}), camera_at(outside)));
-  // Faces that look outward: their black backs take all of its light.
+  // Faces outward: their black backs absorb all of its light.
   tests::SceneBuilder box;
   tests::add_box(box, box.material(tests::grey(0.5)), Vec3(0.0), Vec3(1.0));
   EXPECT_TRUE(lamp_is_hidden(box, lamp_at(inside), camera_at(outside)));
 }
 
-// An object that is known to close by itself is looked at where a lamp or a camera stands in it.
+// A closed object is tested if a lamp or a camera is inside it.
 TEST(Walls, AnObjectThatClosesByItselfHidesWhatIsInIt) {
   tests::SceneBuilder box;
   tests::add_box(box, box.material(tests::grey(0.5)), Vec3(0.0), Vec3(1.0));
@@ -79,15 +79,15 @@ TEST(Walls, TheSkyIsHiddenFromACameraInAClosedRoomAlone) {
   EXPECT_FALSE(hidden_lights(builder.scene, {}).sky);
   EXPECT_TRUE(hidden_lights(builder.scene, {&builder.scene.cameras[0]}).sky);
   builder.scene.cameras.clear();
-  EXPECT_FALSE(hidden_lights(builder.scene, {}).sky);  // `solve` looks everywhere
+  EXPECT_FALSE(hidden_lights(builder.scene, {}).sky);  // `solve` has no cameras
 }
 
-// A hole as small as it may be: the lid is a millimetre short, or a nanometre; or one of its
-// corners is a single bit off.
+// The smallest holes: the lid is a millimetre short, or a nanometre; or one of its corners differs
+// in a single bit.
 TEST(Walls, AHoleKeepsTheLampOn) {
   for (const double gap : {0.1, 1e-3, 1e-9, 1.2e-16}) {
     tests::SceneBuilder builder = room();
-    for (std::size_t k = 20; k < 24; ++k) {  // the corners of z = 1
+    for (std::size_t k = 20; k < 24; ++k) {  // the corners at z = 1
       Vec3& corner = builder.scene.vertices[k];
       if (corner.x == 1.0) corner.x = 1.0 - gap;
     }
@@ -95,7 +95,7 @@ TEST(Walls, AHoleKeepsTheLampOn) {
     builder.scene.cameras = {camera_at(inside)};
     EXPECT_FALSE(hidden_lights(builder.scene, {}).sky) << gap;
   }
-  // Each triangle of it in turn.
+  // Each of its triangles in turn.
   for (std::size_t t = 0; t < 12; ++t) {
     tests::SceneBuilder builder = room();
     builder.scene.triangles.erase(builder.scene.triangles.begin() + std::ptrdiff_t(t));
@@ -114,7 +114,8 @@ TEST(Walls, GlassMirrorsAndSheetsKeepTheLampOn) {
   }
 }
 
-// A lamp of half width w whose middle is w under the lid pokes through it, as does a wide lens.
+// A lamp of half width w whose middle is w under the lid extends through it, and so does a wide
+// lens.
 TEST(Walls, TheWholeLampAndTheWholeLensMustBeOnTheirSide) {
   for (const double clear : {-1e-3, 1e-3}) {
     tests::SceneBuilder builder = room();
@@ -128,7 +129,7 @@ TEST(Walls, TheWholeLampAndTheWholeLensMustBeOnTheirSide) {
     EXPECT_EQ(lamp_is_hidden(builder, lamp_at(outside), camera_at({0.5, 0.5, 0.9 - clear}, 0.2)),
               clear > 0.0);
   }
-  // On the wall itself, and closer than single precision tells.
+  // On the wall itself, and within the error of single precision.
   tests::SceneBuilder builder = room();
   for (const double off : {0.0, 1e-9, 1e-6}) {
     EXPECT_FALSE(lamp_is_hidden(builder, lamp_at({0.5, 0.5, 1.0 - off}), camera_at(outside)));
@@ -148,8 +149,8 @@ TEST(Walls, EveryCameraOfTheCallMustBeKeptOff) {
   EXPECT_EQ(of({&builder.scene.cameras[1]}), (std::vector<bool>{false, true}));
 }
 
-// Boxes at random in a room, some without one of their triangles, far from the origin: wherever a
-// polyline of free segments leads from the lamp to the camera, the lamp is on.
+// Random boxes in a room, some without one of their triangles, far from the origin: if a polyline
+// of unobstructed segments leads from the lamp to the camera, the lamp is on.
 TEST(Walls, NoLampIsHiddenThatAFreeWayLeadsFrom) {
   std::size_t hidden = 0, reached = 0;
   for (std::uint64_t trial = 0; trial < 60; ++trial) {

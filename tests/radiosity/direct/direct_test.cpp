@@ -35,8 +35,8 @@ TEST(Direct, PointSunGivesItsIlluminanceTimesTheCosine) {
 }
 
 TEST(Direct, WideSunGivesAPlateThatFacesItItsIlluminance) {
-  // Whatever the disc's size: 16 Owen-Sobol points of a cosine that runs from 1 to cos 20 deg =
-  // 0.94 have a standard error below 0.02 / 16.
+  // For any size of the disc: 16 Owen-Sobol points of a cosine from 1 to cos 20 deg = 0.94 have a
+  // standard error below 0.02 / 16.
   tests::SceneBuilder builder = small_plate();
   scenes::Sun sun;
   sun.angular_radius_deg = 20.0;
@@ -67,7 +67,7 @@ TEST(Direct, ShadowIsWhereTheBlockerStands) {
 
 TEST(Direct, UniformEarthOverANadirPlateIsPiLTimesTheViewFactor) {
   // E = pi L (R / (R + h))^2. One patch, 1024 rays: the binomial standard error of the share of
-  // rays that meet the disc, times pi L.
+  // rays that hit the disc, times pi L.
   tests::SceneBuilder builder = small_plate();
   scenes::Earth earth;
   earth.half_angle_deg = base::degrees(std::asin(6371.0 / 6796.0));
@@ -110,7 +110,7 @@ TEST(Direct, LampInAClosedRoomLandsItsWholeFlux) {
   EXPECT_NEAR(ledger.landed_lm.r, 400.0 * base::pi, 1e-9);
   EXPECT_NEAR(ledger.landed_lm.b, 100.0 * base::pi, 1e-9);
   EXPECT_EQ(solution.report.sources.at(0).escaped_share, 0.0);
-  // What the patches sampled before scaling agrees within a few permille already.
+  // The patches' samples agree within a few per mille before scaling.
   EXPECT_NEAR(solution.report.sources.at(0).scale, 1.0, 0.01);
 }
 

@@ -12,8 +12,8 @@
 namespace earthshine::radiosity {
 namespace {
 
-// A closed room of 4 x 1 x height m whose six walls emit 1 - rho, each of a material and a light
-// group of its own.
+// A closed room of 4 x 1 x height m whose six walls emit 1 - rho, each with its own material and
+// light group.
 tests::SceneBuilder furnace(const std::array<double, 6>& rho, double height_m) {
   tests::SceneBuilder builder;
   std::array<std::uint32_t, 6> m{};
@@ -27,8 +27,8 @@ tests::SceneBuilder furnace(const std::array<double, 6>& rho, double height_m) {
   return builder;
 }
 
-// B = M + rho E with M = 1 - rho and E = B everywhere has the solution 1, and closed rows keep it
-// whatever the rays found.
+// B = M + rho E with M = 1 - rho and E = B everywhere has the solution 1; closed rows preserve it
+// for any rays.
 void expect_one_everywhere(const scenes::Scene& scene) {
   SolveOptions options;
   options.form_factor_rays = 256;
@@ -49,8 +49,8 @@ TEST(ExplicitEmitters, AMixedFurnaceIsExactWhicheverWallsAreSmall) {
 }
 
 TEST(ExplicitEmitters, ASmallBlackWallOfAWhiteFurnaceDoesNotStandOut) {
-  // 0.6 % of the surface emits 1 and the rest a ten-thousandth of that, 60 times less than the mean
-  // of all: what the white walls send on is as bright as the black one.
+  // 0.6 % of the surface emits 1, the rest a ten-thousandth of that, 60 times less than the overall
+  // mean: the white walls reflect as much light as the black one emits.
   expect_one_everywhere(furnace({0.0, 0.9999, 0.9999, 0.9999, 0.9999, 0.9999}, 0.05).scene);
 }
 
@@ -64,7 +64,7 @@ TEST(ExplicitEmitters, ASmallBrightEmitterAmongDimOnesIsSampled) {
 }
 
 TEST(ExplicitEmitters, ManySmallBrightEmittersAreAllSampled) {
-  // Eight panels of 1 % each: together they are wide, but each row has few rays for any of them.
+  // Eight panels of 1 % each: together they are wide, but few rays of a row hit one of them.
   tests::SceneBuilder builder;
   const std::uint32_t wall = builder.material(tests::grey(0.5));
   builder.room({wall, wall, wall, wall, wall, wall});

@@ -9,7 +9,7 @@
 namespace earthshine::radiosity {
 namespace {
 
-// A closed room with 64 lamps of every kind but measured ones.
+// A closed room with 64 lamps of every kind except measured ones.
 scenes::Scene room_of_lamps(bool in_one_group) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
@@ -55,8 +55,8 @@ TEST(LightCluster, ManyLampsOfOneGroupAreOneSourceOfTheirWholeFlux) {
 }
 
 TEST(LightCluster, GivesPatchesTheLightOfItsLampsOneByOne) {
-  // Mean over seeds of the flux that lands on every object, within four standard errors of that of
-  // lamps sampled each for itself (groups of 16).
+  // Mean over seeds of the flux that lands on every object, within four standard errors of the
+  // result with separately sampled lamps (groups of 16).
   const scenes::Scene scene[] = {room_of_lamps(true), room_of_lamps(false)};
   const int seeds = 8;
   const std::size_t objects = scene[0].objects.size();

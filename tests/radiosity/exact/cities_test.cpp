@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exact form factors of random cities: bodies on a floor that touch one another, share planes,
-// stand on each other, sink into the floor or hover just above it. Rays decide.
+// Exact form factors of random cities: bodies on a floor that touch one another, share planes,
+// stand on each other, sink into the floor or hover just above it. Rays are the reference.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,16 +16,16 @@ namespace earthshine::radiosity {
 namespace {
 
 constexpr double room_m = 4.0;
-constexpr double whole = 1e9;  // an edge that leaves every facet in one patch
+constexpr double whole = 1e9;  // an edge length that gives one patch per facet
 
-// A prism of n sides: a box of 4, a wedge of 3. apex: a pyramid instead.
+// A prism of n sides: a box for 4, a wedge for 3. apex: a pyramid instead.
 struct Body {
   std::vector<Vec3> foot;
   double bottom_m = 0.0, top_m = 1.0;
   bool apex = false;
 };
 
-// Bodies are closed by their own faces, whatever edges they share with floors and walls.
+// Bodies are closed by their own faces, even if they share edges with floors and walls.
 void join_from(scenes::Scene& scene, std::size_t first_object) {
   scenes::Object& body = scene.objects[first_object];
   for (std::size_t t = body.first_triangle; t < scene.triangles.size(); ++t) {
@@ -54,7 +54,7 @@ class City {
     if (number % 4 == 1) place(1.0, Vec3(100.0, -30.0, 7.0), true);
     if (number % 4 == 2) place(1e-3, Vec3(0.0), true);
     if (number % 4 == 3) place(1e3, Vec3(0.0), false);
-    // As scene files are read: of faces that lie on each other, which is met.
+    // As for scene files: determines which of several coincident faces is hit.
     scenes::find_coincident_faces(builder_.scene, scenes::mend_surfaces(builder_.scene, {}));
   }
   [[nodiscard]] const scenes::Scene& scene() const { return builder_.scene; }
@@ -83,23 +83,23 @@ class City {
       case 0:  // against the wall x = 0
         body.foot = rectangle(0, y, w, y + d);
         break;
-      case 1:  // turned about its corner
+      case 1:  // rotated about its corner
         turn(body, between(0.1, 1.4));
         break;
       case 2:  // as wide as the wall
         body.foot = rectangle(x, 0, x + w, room_m);
         break;
-      case 3:  // sunk into the floor, far or by rounding
+      case 3:  // sunk into the floor, deeply or by rounding
         body.bottom_m = rng_.next() < 0.5 ? -between(0.05, 0.3) : -std::pow(10, between(-9, -4));
         break;
-      case 4:  // a hair above the floor
+      case 4:  // just above the floor
         body.bottom_m = std::pow(10, between(-9, -4));
         break;
       case 5:  // a wedge, a pyramid
         body.foot.pop_back();
         body.apex = rng_.next() < 0.5;
         break;
-      case 6:  // a pyramid of four sides, turned
+      case 6:  // a rotated pyramid of four sides
         body.apex = true;
         turn(body, between(0.0, 1.4));
         break;
@@ -126,7 +126,7 @@ class City {
     }
   }
 
-  // On the last body: on all of its top, or overhanging.
+  // On the last body: on its whole top, or overhanging.
   void stack(Body& body) {
     const Body below = bodies_.back();
     if (below.apex) return;
@@ -140,7 +140,7 @@ class City {
     }
   }
 
-  // Side by side with the last body, from the same base, and as high half of the time.
+  // Beside the last body, on the same base, and in half of the cases as high.
   void lean(Body& body) {
     const Body& other = bodies_.back();
     if (other.foot.size() != 4 || other.apex) return;
@@ -198,7 +198,7 @@ class City {
   std::vector<Body> bodies_;
 };
 
-// A_i F_ij of all ordered pairs by rays of the points that no body covers.
+// A_i F_ij of all ordered pairs, by rays from points that no body covers.
 struct Cast {
   std::vector<double> exchange_m2, error_m2;
 };
@@ -215,7 +215,7 @@ Cast cast(const scenes::Scene& scene, const Patches& patches, int rays) {
     }
     for (std::size_t j = 0; j < n; ++j) {
       const double share = made.exchange_m2[i * n + j] / patches.area_m2[i];
-      // Binomial, and never less than one ray.
+      // Binomial, but at least one ray.
       const double one = 1.0 / f.rays_per_patch;
       made.error_m2[i * n + j] =
           patches.area_m2[i] * std::max(one, std::sqrt(share * (1.0 - share) * one));
@@ -231,8 +231,8 @@ PairExchange exactly_by_pairs(const scenes::Scene& scene, const Patches& faces) 
   return exchange_of_pairs(faces, sides, find_open_parts(bodies, query, faces, sides), 2e-4);
 }
 
-// Faces that lie on each other, or hover nearer than rays are lifted off a surface: rays from them
-// say nothing about one another.
+// Whether two faces coincide, or are closer than the ray offset: rays between them are not
+// significant.
 bool lie_together(const Patches& patches, std::uint32_t i, std::uint32_t j, double near_m) {
   const auto corner = patches.corners(i);
   const Vec3 other = patches.corners(j)[0], normal = patches.normal(j);
@@ -240,13 +240,13 @@ bool lie_together(const Patches& patches, std::uint32_t i, std::uint32_t j, doub
                      [&](const Vec3& p) { return std::abs(glm::dot(p - other, normal)) < near_m; });
 }
 
-// Rays from an underside that hovers a hair over the floor start below the floor.
+// Rays from an underside just above the floor start below the floor.
 bool is_underside_on_floor(const Patches& patches, std::uint32_t i, double near_m) {
   return glm::dot(patches.normal(i), patches.normal(0)) < -0.5 &&
          lie_together(patches, i, 0, near_m);
 }
 
-// Pairs whose rays from both ends are that many standard errors off the exact exchange.
+// Pairs whose rays from both ends differ from the exact exchange by this number of standard errors.
 std::vector<std::string> disagreements(const Patches& patches, const PairExchange& exact,
                                        const Cast& cast, double near_m) {
   constexpr double errors = 4.0;
@@ -270,13 +270,14 @@ std::vector<std::string> disagreements(const Patches& patches, const PairExchang
   return found;
 }
 
-// A box 1 m high on the floor before a wall of 2 x 2 m, as wide as both, 3 m of floor. The floor in
-// front of the box is in plain sight: perpendicular rectangles with a common edge, F in closed form.
-// Behind it the line from the height z of the wall to x clears the box, whose far edge is at x = 1,
-// where z (1 - 1 / x) >= 1: a fourfold integral by Gauss rules. Both are at five digits.
+// A box 1 m high on the floor before a wall of 2 x 2 m, as wide as both, with 3 m of floor. The
+// floor in front of the box is unoccluded: perpendicular rectangles with a common edge, F in closed
+// form. Behind it the line from the height z of the wall to x clears the box, whose far edge is at
+// x = 1, if z (1 - 1 / x) >= 1: a fourfold integral by Gauss rules. Both are accurate to five
+// digits.
 TEST(Cities, ABoxOnTheFloorHidesAllButWhatLinesOverItsFarEdgeReach) {
   struct Case {
-    double from_m, wall_m2, floor_m2;  // what the box leaves open
+    double from_m, wall_m2, floor_m2;  // open areas beside the box
     double wall_to_floor;
   };
   for (const Case& one : {Case{0.1, 4.0, 4.2, 0.027035}, Case{0.0, 2.0, 4.0, 0.0079975}}) {
@@ -295,7 +296,7 @@ TEST(Cities, ABoxOnTheFloorHidesAllButWhatLinesOverItsFarEdgeReach) {
       ASSERT_EQ(f.column[0], 1U);
       EXPECT_NEAR(f.row_scale[0] * double(f.hits[0]), one.wall_to_floor, 2e-5)
           << one.from_m << " " << scale;
-      // The same light the other way.
+      // The same exchange in the other direction.
       ASSERT_EQ(f.column[f.row_start[1]], 0U);
       EXPECT_NEAR(f.row_scale[1] * double(f.hits[f.row_start[1]]) * one.floor_m2,
                   one.wall_m2 * one.wall_to_floor, 5e-5);
@@ -315,7 +316,8 @@ TEST(Cities, ExactFactorsAgreeWithRaysWithinFourStandardErrors) {
     const double near_m = 1e-3 * city.scale();
     pairs += exact.upper_m2.size();
     if (disagreements(faces, exact, cast(city.scene(), faces, 1 << 10), near_m).empty()) continue;
-    // Of some hundred thousand pairs a few are that far off by chance: many more rays decide.
+    // Of some hundred thousand pairs a few deviate so far by chance: tests them with many more
+    // rays.
     ++recast;
     for (const std::string& pair :
          disagreements(faces, exact, cast(city.scene(), faces, 1 << 15), near_m)) {
@@ -326,8 +328,8 @@ TEST(Cities, ExactFactorsAgreeWithRaysWithinFourStandardErrors) {
   RecordProperty("recast", static_cast<int>(recast));
 }
 
-// Rows are checked by themselves: in a closed room they add up to 1 before they are scaled, and in
-// an open one what they leave open is what rays find open.
+// Checks rows alone: in a closed room they add up to 1 before scaling, in an open one the open
+// share agrees with rays.
 TEST(Cities, RowsLeaveOpenWhatRaysFindOpen) {
   for (std::uint64_t number = 0; number < 200; number += 5) {
     const City city(number);

@@ -12,7 +12,7 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr double whole = 1e9;  // an edge that leaves every facet in one patch
+constexpr double whole = 1e9;  // an edge length that gives one patch per facet
 
 struct Made {
   Patches patches;
@@ -47,7 +47,7 @@ scenes::Material sheet() {
   return material;
 }
 
-// Mean over rows of sqrt(sum_j (F_ij - G_ij)^2), from the pairs themselves.
+// Mean over rows of sqrt(sum_j (F_ij - G_ij)^2), from the unscaled pairs.
 double row_distance(const Patches& patches, const PairExchange& one, const PairExchange& two) {
   std::vector<double> square(patches.count(), 0.0);
   for (std::size_t i = 0; i < patches.count(); ++i) {
@@ -62,7 +62,7 @@ double row_distance(const Patches& patches, const PairExchange& one, const PairE
   return sum / static_cast<double>(patches.count());
 }
 
-// Shared-edge unit squares of a room at any place: C-14 of Howell, and C-11 for opposite ones.
+// Unit squares of a room at any position: with a common edge C-14 of Howell, opposite C-11.
 TEST(ExactFormFactors, ARoomOfWholeFacesIsExactHereAndAMillionMetresAway) {
   for (const double away : {0.0, 1e6}) {
     tests::SceneBuilder builder;
@@ -89,8 +89,8 @@ TEST(ExactFormFactors, BlockersAtHalfHeightTakeTheirExactShare) {
     builder.plate(thin, side[k], 0.5, true);
     const Made made = make(builder.scene, whole);
     EXPECT_NEAR(made.form_factor(0, 1), exact[k], 1e-5) << side[k];
-    // Cut into 4 x 4 patches each, the mean over the patches is the same. A sheet's front faces up,
-    // its patches follow those of the plates.
+    // With 4 x 4 patches each, the mean over the patches is the same. A sheet's front faces up; its
+    // patches follow the plates' patches.
     const Made cut = make(builder.scene, 0.25);
     double sum = 0.0;
     for (std::size_t i = 0; i < 16; ++i) {
@@ -101,8 +101,8 @@ TEST(ExactFormFactors, BlockersAtHalfHeightTakeTheirExactShare) {
 }
 
 TEST(ExactFormFactors, ATiltedBlockerHidesWhatRaysSayItHides) {
-  // Nothing runs along the receivers' sides here, so that no kink is known beforehand. Ray-cast F
-  // at 2^19 rays, within 4 binomial standard errors.
+  // No edge is parallel to the receivers' sides, so that no kinks are known in advance. Ray-cast F
+  // with 2^19 rays, within 4 binomial standard errors.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5)), thin = builder.material(sheet());
   builder.plate(m, 1.0, 0.0, true);
@@ -123,8 +123,8 @@ TEST(ExactFormFactors, ATiltedBlockerHidesWhatRaysSayItHides) {
 }
 
 TEST(ExactFormFactors, CubeWithABoxClosesBeforeAnyRowIsScaled) {
-  // 408 patches, no reference needed: every row must add up to 1. The default tolerance leaves
-  // 1e-4 of a row at most, a tenth of it a hundredth.
+  // 408 patches without a reference: every row must add up to 1. The default tolerance leaves at
+  // most 1e-4 of a row, a tenth of it a hundredth.
   const tests::CutScene cut = tests::cube_and_box(8);
   const Made coarse = make(cut.scene, cut.patches);
   EXPECT_EQ(coarse.exact.report.closed_rows, 408U);
@@ -147,8 +147,8 @@ TEST(ExactFormFactors, CubeWithABoxStaysWithinItsEstimatedError) {
 }
 
 TEST(ExactFormFactors, ARoomFullOfBoxesCloses) {
-  // 2 x 2 x 2 boxes: narrow views between them, and some 100 partly hidden pairs per row of 1e-5
-  // each at most, of either sign.
+  // 2 x 2 x 2 boxes: narrow views between them, and some 100 partly hidden pairs per row with
+  // errors of at most 1e-5 of either sign.
   const tests::CutScene cut = tests::cube_and_boxes(4, 2);
   const Made made = make(cut.scene, cut.patches);
   EXPECT_EQ(made.exact.report.closed_rows, cut.patches.count());
@@ -169,8 +169,8 @@ TEST(ExactFormFactors, ARoundBodyOfManyFacesHidesAsOneOutline) {
 }
 
 TEST(ExactFormFactors, ExchangesAreReciprocalToSinglePrecision) {
-  // A_i F_ij = A_j F_ji: both are one number, rounded to float on its way into the rows, and scaled
-  // by row scales that differ from 1 by the closure's defect.
+  // A_i F_ij = A_j F_ji: both come from one number, rounded to float in the rows and scaled by row
+  // scales that differ from 1 by the closure's defect.
   const tests::CutScene cut = tests::cube_and_box(4);
   const Made made = make(cut.scene, cut.patches, {.tolerance = 1e-7});
   for (std::size_t i = 0; i < cut.patches.count(); ++i) {
@@ -182,8 +182,8 @@ TEST(ExactFormFactors, ExchangesAreReciprocalToSinglePrecision) {
 }
 
 TEST(ExactFormFactors, BothSidesOfASheetSeeTheirOwnHalfOfTheRoom) {
-  // A sheet across the room at mid height: the front sees the ceiling 1/2 m away (C-11 with X = 2),
-  // the back the floor, neither the other; and the ceiling does not see the floor.
+  // A sheet across the room at mid height: the front sees the ceiling at 1/2 m (C-11 with X = 2),
+  // the back the floor, neither the other; the ceiling does not see the floor.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5)), thin = builder.material(sheet());
   builder.room({m, m, m, m, m, m});
@@ -198,8 +198,8 @@ TEST(ExactFormFactors, BothSidesOfASheetSeeTheirOwnHalfOfTheRoom) {
 }
 
 TEST(ExactFormFactors, WhatIsLeftOpenIsSkyOrBlackBack) {
-  // The lower plate sees the black back of the upper one, 1 m above: F = 0.19982 by C-11. No patch
-  // is seen, so the split is the rays' alone: 4 standard errors of 4096.
+  // The lower plate sees the black back of the upper one, 1 m above: F = 0.19982 by C-11. It sees
+  // no patch, so that rays alone divide the row: 4 standard errors of 4096.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.plate(m, 1.0, 0.0, true);
@@ -218,15 +218,15 @@ TEST(ExactFormFactors, SkyIlluminanceOfAUniformSkyIsPiLTimesTheSkysShare) {
   builder.plate(m, 1.0, 1.0, false);
   const Made made = make(builder.scene, subdivide(builder.scene, whole), {},
                          [](const Vec3&) { return Rgb(100.0); });
-  // What is not the other plate is sky, and that share is as exact as the plate's.
+  // Everything except the other plate is sky, and its share is as accurate as the plate's.
   EXPECT_NEAR(made.exact.factors.sky[0], 1.0 - 0.19982489569838, 1e-7);
   EXPECT_NEAR(made.exact.factors.sky_illuminance[0].g, 100.0 * base::pi * made.exact.factors.sky[0],
               1e-9);
 }
 
 TEST(ExactFormFactors, BodiesInsideBodiesAndTwinFacesStayWithinBounds) {
-  // A box twice at the same place, one inside it, one through its side and the room's floor: no
-  // law but finite factors in [0, 1] and closed rows.
+  // Two boxes at one place, one box inside another, one through its side and the room's floor: no
+  // law applies, but factors are finite in [0, 1] and rows closed.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.room({m, m, m, m, m, m});
@@ -248,8 +248,8 @@ TEST(ExactFormFactors, BodiesInsideBodiesAndTwinFacesStayWithinBounds) {
 }
 
 TEST(ExactFormFactors, AWallThroughTheFloorCountsWithItsUpperPart) {
-  // From below the floor's plane nothing arrives: C-14 for the upper half of the wall, and the
-  // floor's far part behind the wall sees its black back.
+  // No light arrives from below the floor's plane: C-14 for the upper half of the wall; the part of
+  // the floor behind the wall sees its black back.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.quad(m, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});

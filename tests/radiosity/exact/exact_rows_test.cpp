@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What exact rows leave open, and pairs that are hard to integrate.
+// Open shares of exact rows, and pairs that are hard to integrate.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,8 +16,8 @@ ExactFormFactors exact(const scenes::Scene& scene) {
 }
 
 TEST(ExactRows, AGapThatFewRaysFindIsNotScaledAway) {
-  // Facing unit squares 2 mm, 0.1 mm and 7 um apart (Howell C-11, X = Y = 1 / h): of the share that
-  // escapes, about 2 h, 256 rays find nothing most of the time.
+  // Facing unit squares 2 mm, 0.1 mm and 7 um apart (Howell C-11, X = Y = 1 / h): the escaping
+  // share, about 2 h, is usually missed by 256 rays.
   for (const double h : {2e-3, 1e-4, 7e-6}) {
     tests::SceneBuilder builder;
     const std::uint32_t m = builder.material(tests::grey(0.5));
@@ -35,7 +35,7 @@ TEST(ExactRows, AGapThatFewRaysFindIsNotScaledAway) {
 
 TEST(ExactRows, TheSplitBetweenSkyAndBacksHasItsError) {
   // A plate under the black back of another, unit squares 1 m apart: 0.19982489569838 to backs, the
-  // rest to the sky, as 256 rays find it.
+  // rest to the sky, as divided by 256 rays.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.plate(m, 1.0, 0.0, true);
@@ -49,16 +49,16 @@ TEST(ExactRows, TheSplitBetweenSkyAndBacksHasItsError) {
 }
 
 TEST(ExactRows, EdgesThatNearlyTouchAlongTheirLengthChangeLittleAndEnd) {
-  // Perpendicular unit squares with a common edge (0.2000437760754), one of them moved and turned
-  // by the rounding of a file of six digits and less: F changes by about the move, and the work,
-  // which grew as length over gap once, does not.
+  // Perpendicular unit squares with a common edge (0.2000437760754). One of them is displaced and
+  // rotated by the rounding of a file with six or fewer digits: F changes by about the
+  // displacement. The work does not grow with length over gap.
   for (const double off : {1e-5, 1e-6, 1e-7, 1e-9, 1e-12}) {
     tests::SceneBuilder builder;
     const std::uint32_t m = builder.material(tests::grey(0.5));
     builder.quad(m, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
     builder.quad(m, {-off, 0, off}, {0, 1, 2 * off}, {0, 1, 1}, {-off, 0, 1});
     const FormFactors f = exact(builder.scene).factors;
-    double sum = 0.0;  // over the two triangles that the second is made of
+    double sum = 0.0;  // over the two triangles of the second square
     for (std::uint64_t e = 0; e < f.row_start[1]; ++e) sum += f.row_scale[0] * double(f.hits[e]);
     EXPECT_NEAR(sum, 0.2000437760754, 4.0 * off + 1e-7) << off;
   }

@@ -8,7 +8,7 @@
 namespace earthshine::radiosity {
 namespace {
 
-// |sum_i A_i a_i F_ij - A_j (1 - escape_j - lost_j)|, the worst over j relative to A_j.
+// Maximum over j of |sum_i A_i a_i F_ij - A_j (1 - escape_j - lost_j)| / A_j.
 double worst_column_defect(const FormFactors& f, const Patches& patches) {
   std::vector<double> sum(f.count(), 0.0);
   for (std::size_t i = 0; i < f.count(); ++i) {
@@ -43,7 +43,7 @@ void expect_conservation(const scenes::Scene& scene, double edge_m, int rays) {
   const scenes::RayQuery query(scene);
   const Patches patches = subdivide(scene, edge_m);
   FormFactors factors = cast_form_factors(scene, query, patches, {rays, 1});
-  EXPECT_GT(worst_column_defect(factors, patches), 1e-3);  // noise before
+  EXPECT_GT(worst_column_defect(factors, patches), 1e-3);  // noise before balancing
   const BalanceReport report = balance(factors, patches.area_m2);
   EXPECT_TRUE(report.balanced);
   EXPECT_LE(report.after, 1e-12);
@@ -78,7 +78,7 @@ TEST(Balance, RoomWithAHalfMirrorConservesEnergy) {
 }
 
 TEST(Balance, PatchesThatNoRayReachesBorrowTheTransposedEntries) {
-  // A plate a thousandth of the room's size: few of the walls' rays meet it, and its cells see
+  // A plate a thousandth of the room's size: few of the walls' rays hit it, and its cells see
   // everything.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
@@ -94,8 +94,8 @@ TEST(Balance, PatchesThatNoRayReachesBorrowTheTransposedEntries) {
 }
 
 TEST(Balance, APatchThatOnlyASpecksRaysReachedBorrowsToo) {
-  // Patches 0 and 1 see each other, 2 sees both but was met by the rays of 3 alone, a speck of a
-  // billionth of its area: filling column 2 from that row would take a scale of a billion.
+  // Patches 0 and 1 see each other, 2 sees both but was hit only by rays of 3, a patch of a
+  // billionth of its area: to fill column 2 from that row would need a scale of a billion.
   FormFactors f;
   f.rays_per_patch = 64;
   f.row_start = {0, 1, 2, 4, 5};
@@ -108,15 +108,16 @@ TEST(Balance, APatchThatOnlyASpecksRaysReachedBorrowsToo) {
   f.sky_illuminance.assign(4, Rgb(0.0));
   const std::vector<double> area = {1.0, 1.0, 1.0, 1e-9};
   const BalanceReport report = balance(f, area);
-  EXPECT_EQ(report.borrowed, 2U);  // 2, and the speck, which nobody met
+  EXPECT_EQ(report.borrowed, 2U);  // 2, and the small patch, which no ray hit
   EXPECT_TRUE(report.balanced) << report.after;
   for (const double scale : f.column_scale) EXPECT_LT(scale, 10.0);
 }
 
 TEST(Balance, WhatAPatchBorrowsDoesNotDependOnHowManyRaysItSent) {
-  // Patches of one area: 0 and 1 see each other by two thirds, 2 by a third; 2 sees both alike, by
-  // 64 times as many rays, and was met by none of theirs. A_i F_ij = A_j F_ji gives it 32 of the 96
-  // rays of 0 and of 1, so that the raw matrix is right as it is and balancing scales nothing.
+  // Patches of equal area: 0 and 1 see each other by two thirds and 2 by a third. 2 sees both
+  // equally, with 64 times as many rays, but all their rays missed it. A_i F_ij = A_j F_ji gives it
+  // 32 of the 96 rays of 0 and of 1, so that the raw matrix is correct and balancing scales
+  // nothing.
   FormFactors f;
   f.rays_per_patch = 64;
   f.row_start = {0, 1, 2, 4};
@@ -136,8 +137,7 @@ TEST(Balance, WhatAPatchBorrowsDoesNotDependOnHowManyRaysItSent) {
 }
 
 TEST(Balance, FacingPlatesWhoseRaysDisagreeStillBalance) {
-  // Each plate's only neighbour is the other: without the sky's part in it no scaling could make
-  // both sums right.
+  // Each plate's only neighbour is the other: without the sky no scaling could satisfy both sums.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.plate(m, 1.0, 0.0, true);
@@ -146,8 +146,8 @@ TEST(Balance, FacingPlatesWhoseRaysDisagreeStillBalance) {
 }
 
 TEST(Balance, ANearlyClosedRoomNeedsNoMoreSweepsThanAClosedOne) {
-  // A slit of a hundredth of the ceiling: the open share is 0.2 % of the surface, and without the
-  // step that shares it out the defect would shrink by about that much per sweep (3e-7 after 500).
+  // A slit of a hundredth of the ceiling: the open share is 0.2 % of the surface. Without Newton's
+  // step the defect would decrease by about this share per sweep (3e-7 after 500).
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.9));
   builder.room({m, m, m, m, m, m});
@@ -164,9 +164,9 @@ TEST(Balance, ANearlyClosedRoomNeedsNoMoreSweepsThanAClosedOne) {
 }
 
 TEST(Balance, TwoClosedRoomsJoinedByASmallHoleBalance) {
-  // Each room's light leaves by a hundredth of a per cent of its surface: the defect between the
-  // rooms shrinks by about that share per plain sweep (3e-6 after 500 of them), at once by Newton's
-  // step.
+  // Each room's light leaves through a hundredth of a per cent of its surface: the defect between
+  // the rooms decreases by about this share per plain sweep (3e-6 after 500), and at once by
+  // Newton's step.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.9));
   scenes::Material sheet = tests::grey(0.9);
@@ -174,7 +174,7 @@ TEST(Balance, TwoClosedRoomsJoinedByASmallHoleBalance) {
   const std::uint32_t wall = builder.material(sheet);
   builder.room({m, m, m, m, m, m});
   for (Vec3& p : builder.scene.vertices) p.x *= 2.0;
-  // The wall between them leaves a corner of 2 x 2 cm free.
+  // The wall between them leaves an opening of 2 x 2 cm in a corner.
   builder.quad(wall, {1, 0, 0}, {1, 0.98, 0}, {1, 0.98, 1}, {1, 0, 1});
   builder.quad(wall, {1, 0.98, 0}, {1, 1, 0}, {1, 1, 0.98}, {1, 0.98, 0.98});
   const scenes::RayQuery query(builder.scene);
@@ -188,8 +188,8 @@ TEST(Balance, TwoClosedRoomsJoinedByASmallHoleBalance) {
 }
 
 TEST(Balance, TooFewHitsForAnyScalingAreFilledUntilOneExists) {
-  // Eight rays for each of 2400 patches: many patches are met by one or two rays of neighbours that
-  // met nothing else in need, and no scaling of rows and columns fits both sums.
+  // Eight rays for each of 2400 patches: many patches are hit by one or two rays of neighbours that
+  // hit no other starved patch, and no scaling of rows and columns satisfies both sums.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.room({m, m, m, m, m, m});
@@ -199,7 +199,7 @@ TEST(Balance, TooFewHitsForAnyScalingAreFilledUntilOneExists) {
   const BalanceReport report = balance(factors, patches.area_m2);
   EXPECT_TRUE(report.balanced) << report.after;
   EXPECT_GT(report.filled, 0U);
-  EXPECT_LE(report.held, 0.002);  // a thousandth is offered to every patch, some need more
+  EXPECT_LE(report.held, 0.002);  // every patch gets a thousandth; some need more
   EXPECT_LE(worst_column_defect(factors, patches), 1e-10);
   EXPECT_LE(worst_row_defect(factors), 1e-13);
   for (const double scale : factors.column_scale) {
@@ -225,7 +225,7 @@ TEST(Balance, HitsThatAdmitAScalingAreNotTouched) {
 
 TEST(Balance, SkySharesSeenAndReachedAgreeWithinTheRaysNoise) {
   // escape_j = F_j,sky by reciprocity; 1024 rays per patch: 4 binomial standard errors of the
-  // difference of two.
+  // difference of two estimates.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.room({m, m, m, m, m, m});

@@ -10,8 +10,8 @@
 namespace earthshine::radiosity {
 namespace {
 
-// Rays of a cluster start on its triangles and leave on their side: those of a convex body meet
-// none of it.
+// Rays of a cluster start on its triangles and leave on their side: rays of a convex body do not
+// hit it.
 TEST(ClusterRays, RaysOfAConvexBodyLeaveIt) {
   tests::SceneBuilder builder;
   tests::fine_sphere(builder, builder.material(tests::grey(0.5)), {0, 0, 0}, 1.0, 24);
@@ -24,8 +24,9 @@ TEST(ClusterRays, RaysOfAConvexBodyLeaveIt) {
   for (const double sky : factors.sky) EXPECT_EQ(sky, 1.0);
 }
 
-// A closed room in which everything emits M and reflects rho has B = M / (1 - rho) everywhere, on
-// a sphere of 99 904 triangles too, whose few patches see rounded neighbours; and energy adds up.
+// A closed room in which everything emits M and reflects rho has B = M / (1 - rho) everywhere,
+// including a sphere of 99 904 triangles, whose few patches see rounded neighbours; the energy
+// balance closes.
 TEST(ClusterRays, AFurnaceWithAFineSphereIsExact) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.6, 0.4));
@@ -44,9 +45,9 @@ TEST(ClusterRays, AFurnaceWithAFineSphereIsExact) {
   EXPECT_TRUE(solution.report.balance.balanced);
 }
 
-// Seen from inside a sphere every cluster is hollow and sends light to itself: by the cosine law a
-// share F = A / A_sphere of all light meets any area A of a sphere, its own too (up to chords for
-// arcs), and rows that lost it would not close.
+// Seen from inside a sphere every cluster is concave and lights itself: by the cosine law a share F
+// = A / A_sphere of all light arrives at any area A of a sphere, including the sender (up to chords
+// for arcs), and rows without it would not close.
 TEST(ClusterRays, HollowOnesLightThemselves) {
   tests::SceneBuilder builder;
   tests::fine_sphere(builder, builder.material(tests::grey(0.5)), {0, 0, 0}, 1.0, 48);

@@ -13,7 +13,7 @@
 namespace earthshine::radiosity {
 namespace {
 
-// A closed matrix of hits without geometry, each row of 64 rays.
+// A closed matrix of hits without geometry, 64 rays per row.
 FormFactors of_hits(const std::vector<std::vector<std::pair<std::uint32_t, float>>>& rows) {
   FormFactors f;
   f.rays_per_patch = 64;
@@ -56,10 +56,10 @@ TEST(ColumnSums, AreThoseOfAllRowsHoweverFewThereAre) {
 }
 
 TEST(FilledHits, LightThatFindsNoWayBackGetsOne) {
-  // 0 and 1 meet each other alone, half of what leaves 2 goes to 0, and 3 sees 2: nothing comes
-  // back over the cut between {0, 1} and {2, 3}, so that columns 0 and 1 hold 2.5 areas for 2.
-  // Conservation over the cut asks for A_0 F_02 = A_2 F_20. Scaling the hits alone takes F_20 to 0,
-  // which they say is 0.5.
+  // 0 and 1 hit only each other, half of the light of 2 goes to 0, and 3 hits 2. Nothing returns
+  // across the cut between {0, 1} and {2, 3}, so that columns 0 and 1 have 2.5 areas of light for
+  // 2. Conservation across the cut requires A_0 F_02 = A_2 F_20. Scaling the hits alone would drive
+  // F_20, 0.5 by the hits, to 0.
   FormFactors f = of_hits({{{1, 64}}, {{0, 64}}, {{0, 32}, {3, 32}}, {{2, 64}}});
   const std::vector<double> area = {1.0, 1.0, 1.0, 1.0};
   const BalanceReport report = balance(f, area);
@@ -70,9 +70,9 @@ TEST(FilledHits, LightThatFindsNoWayBackGetsOne) {
 }
 
 TEST(FilledHits, APatchWhoseLightHasNoRoomElsewhereKeepsTheRest) {
-  // Patch 0 of 3 m2 met only 1 and 2, of 1 m2 each, which have room for 2 of its 3 m2 of light:
-  // both ways filled already, and yet no scaling. The last third stays: 1 of 5 m2 in all, and
-  // nothing of 1 and 2, which 0 fills.
+  // Patch 0 of 3 m2 hits only 1 and 2, of 1 m2 each, which can receive 2 of its 3 m2 of light: the
+  // pattern is symmetric, and yet there is no scaling. The last third stays on patch 0: 1 of 5 m2
+  // in total, and none on 1 and 2, which 0 fills.
   FormFactors f = of_hits({{{1, 32}, {2, 32}}, {{0, 64}}, {{0, 64}}});
   const std::vector<double> area = {3.0, 1.0, 1.0};
   const BalanceReport report = balance(f, area);

@@ -29,7 +29,7 @@ TEST(FormFactor, EveryRowOfAnOpenSceneClosesToTheLastDigits) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.plate(m, 1.0, 0.0, true);
-  builder.plate(m, 1.0, 1.0, true);  // shows its black back to the first
+  builder.plate(m, 1.0, 1.0, true);  // its black back toward the first
   const Cast c = cast(builder.scene, 0.25, 1024);
   const ObjectFormFactors objects = object_form_factors(builder.scene, c.patches, c.factors);
   EXPECT_LE(objects.max_row_error, 1e-15);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int run_rays = 64;
 
-// Side by side in the plane z = 0, squares of these sides.
+// Adjacent squares with these sides in the plane z = 0.
 scenes::Scene plates(const std::vector<double>& sides) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
@@ -36,7 +36,7 @@ FormFactors cast(const scenes::Scene& scene, const Patches& patches, int each, b
 }
 
 TEST(ObjectRuns, EveryObjectIsKnownByTheRaysOf64Patches) {
-  // Cut at 1 m: 1, 4, 36, 64 and 100 patches. 64 / 36 is rounded up to a power of two.
+  // Divided at 1 m: 1, 4, 36, 64 and 100 patches. 64 / 36 is rounded up to a power of two.
   const scenes::Scene scene = plates({1, 2, 6, 8, 10});
   EXPECT_EQ(object_runs(scene, subdivide(scene, 1.0), run_rays),
             (std::vector<std::uint32_t>{64, 16, 2, 1, 1}));
@@ -51,9 +51,9 @@ TEST(ObjectRuns, NoRowIsLongerThanAMillionRaysForIt) {
 }
 
 TEST(ObjectRuns, ManySmallObjectsShareABoundedCost) {
-  // n objects of one patch each would add 63 n runs: 2048 are allowed until a quarter of all
-  // patches is more. 32 add 2016; 33 get half as many each; of 10 000, a quarter adds less than one
-  // run to each.
+  // n objects of one patch each would add 63 n runs: up to 2048 are allowed, or a quarter of all
+  // patches if that is more. 32 objects add 2016. 33 get half as many each. For 10 000, a quarter
+  // adds less than one run to each.
   for (const auto& [objects, wanted] : std::vector<std::pair<std::size_t, std::uint32_t>>{
            {32, 64}, {33, 32}, {2048, 2}, {10000, 1}}) {
     const scenes::Scene scene = plates(std::vector<double>(objects, 1.0));
@@ -62,7 +62,7 @@ TEST(ObjectRuns, ManySmallObjectsShareABoundedCost) {
   }
 }
 
-// A room of 6 x 16 patches, a wall each an object, and a gauge of one patch in its middle.
+// A room of 6 x 16 patches, each wall an object, and an instrument of one patch in its middle.
 scenes::Scene room_with_gauge() {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
@@ -72,7 +72,7 @@ scenes::Scene room_with_gauge() {
 }
 
 TEST(ObjectRuns, ARowOfManyRunsIsTheRowOfAsManyRaysAPatch) {
-  // Runs go on in the sequence: 64 of them are the first 64 * 64 points of it, to the last hit.
+  // Runs continue the sequence: 64 runs are its first 64 * 64 points, with exactly equal hits.
   const scenes::Scene scene = room_with_gauge();
   const Patches patches = subdivide(scene, 0.25);
   const FormFactors runs = cast(scene, patches, run_rays, true);
@@ -84,7 +84,7 @@ TEST(ObjectRuns, ARowOfManyRunsIsTheRowOfAsManyRaysAPatch) {
   };
   EXPECT_EQ(row(runs), row(alone));
   EXPECT_EQ(runs.row_scale[gauge], alone.row_scale[gauge]);
-  // Walls of 16 patches send 4 runs.
+  // Walls of 16 patches cast 4 runs.
   EXPECT_EQ(runs.ray_count, std::uint64_t{run_rays} * (6 * 16 * 4 + 64));
   EXPECT_EQ(runs.rays_per_patch, run_rays);
 }
@@ -119,10 +119,10 @@ TEST(ObjectRuns, SameBytesOnOneAndTwoThreads) {
 }
 
 TEST(ObjectRuns, AGaugeIsAsWellKnownAsAWall) {
-  // 16 gauges of one patch under a shining plate of 4 x 4 m at 2 m: F of each in closed form, about
-  // 0.3. 1024 rays a patch: 64 runs know F to (F (1 - F) / 65536)^1/2 = 0.0018 if the rays were
-  // drawn independently, and evenly spread ones at least to a third of that; one run alone is off
-  // by three times as much.
+  // 16 instruments of one patch under an emitting plate of 4 x 4 m at 2 m: F of each in closed
+  // form, about 0.3. 1024 rays per patch: 64 runs have an error of F of (F (1 - F) / 65536)^1/2 =
+  // 0.0018 for independent rays, at most a third of it for stratified ones; one run alone has three
+  // times this error.
   constexpr int a_patch = 1024;
   constexpr double half = 0.01, height = 2.0;
   tests::SceneBuilder builder;

@@ -14,7 +14,7 @@ namespace {
 
 using scenes::RayPacket;
 
-// A plate, a sliver of a triangle and a sheet, far from the origin.
+// A plate, a sliver triangle and a sheet, far from the origin.
 scenes::Scene some_surfaces() {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
@@ -22,9 +22,9 @@ scenes::Scene some_surfaces() {
   sheet.two_sided = true;
   const std::uint32_t thin = builder.material(sheet);
   builder.quad(m, {0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0});
-  builder.quad(m, {0, 0, 2}, {0, 1, 2}, {3, 0.2, 2.5}, {3, 0, 2.5});  // no parallelogram
+  builder.quad(m, {0, 0, 2}, {0, 1, 2}, {3, 0.2, 2.5}, {3, 0, 2.5});  // not a parallelogram
   builder.quad(thin, {5, 0, 0}, {5, 1, 0}, {5, 1, 1}, {5, 0, 1});
-  // The same triangle with its apex, opposite the shortest edge, as first, second and third corner.
+  // The same triangle with its apex, opposite the shortest edge, as first, second and third vertex.
   const auto v = static_cast<std::uint32_t>(builder.scene.vertices.size());
   builder.scene.vertices.insert(builder.scene.vertices.end(), {{8, 0, 0}, {8, 2, 0}, {8, 2, 0.7}});
   for (std::uint32_t turn = 0; turn < 3; ++turn) {
@@ -65,12 +65,13 @@ TEST(PatchRays, LeaveFromTheirPatchCosineDistributedAboutItsNormal) {
         ASSERT_NEAR(glm::dot(from - facet.corner, normal), 0.0, 2e-6);
       }
     }
-    // Under a cosine distribution E cos = 2/3 and E cos^2 = 1/2, with variances 1/18 and 1/12; the
-    // mean sideways part has variance 1/4 per axis. Four errors of independent samples.
+    // For a cosine distribution E cos = 2/3 and E cos^2 = 1/2, with variances 1/18 and 1/12; the
+    // mean tangential component has variance 1/4 per axis. Four standard errors of independent
+    // samples.
     EXPECT_NEAR(cosine, 2.0 / 3.0, 4.0 * std::sqrt(1.0 / 18.0 / count));
     EXPECT_NEAR(cosine2, 0.5, 4.0 * std::sqrt(1.0 / 12.0 / count));
     EXPECT_LE(glm::length(side - normal * cosine), 4.0 * std::sqrt(0.5 / count));
-    // A (0, m, 1)-net in each parameter leaves the mean within a step of the area's centroid.
+    // A (0, m, 1)-net in each parameter has a mean within one step of the area's centroid.
     const auto corners = patches.corners(i);
     const Vec3 diagonal = corners[2] - corners[0];
     const double a = 0.5 * glm::length(glm::cross(corners[1] - corners[0], diagonal));
@@ -84,8 +85,8 @@ TEST(PatchRays, LeaveFromTheirPatchCosineDistributedAboutItsNormal) {
 }
 
 TEST(PatchRays, APacketsRaysAreNeighbours) {
-  // Eight consecutive samples of the Morton order share an elementary box of an 1/8 of (u, v)
-  // space: a packet's directions spread less than the hemisphere's, by far.
+  // Eight consecutive samples in Morton order share an elementary box of an 1/8 of (u, v) space:
+  // the directions of a packet vary much less than over the hemisphere.
   const scenes::Scene scene = some_surfaces();
   const scenes::RayQuery query(scene);
   const Patches patches = subdivide(scene, 4.0);
@@ -101,7 +102,7 @@ TEST(PatchRays, APacketsRaysAreNeighbours) {
     }
     spread += (1.0 - glm::length(mean)) / 128.0;
   }
-  EXPECT_LE(spread, 0.02);  // of the whole hemisphere 1 - 2/3
+  EXPECT_LE(spread, 0.02);  // over the whole hemisphere 1 - 2/3
 }
 
 TEST(HitTargets, AgreeWithTheSearchInDoublePrecision) {
@@ -111,7 +112,7 @@ TEST(HitTargets, AgreeWithTheSearchInDoublePrecision) {
   for (std::uint32_t triangle = 0; triangle < scene.triangles.size(); ++triangle) {
     for (int i = 0; i < 61; ++i) {
       for (int j = 0; i + j < 61; ++j) {
-        // Off the cells' edges by an irrational step, so that rounding decides nothing.
+        // Moved off the cells' edges by an irrational step, so that rounding does not matter.
         const double u = (i + 0.2360680) / 61.5, v = (j + 0.1415927) / 61.5;
         for (const bool front : {true, false}) {
           EXPECT_EQ(targets.find(triangle, static_cast<float>(u), static_cast<float>(v), front),

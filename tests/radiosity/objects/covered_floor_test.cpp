@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lies under a body takes no part in the table between objects, by either method.
+// The area under a body is excluded from the table between objects, in both methods.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t room_floor = 4, room_ceiling = 5, box_side = 6;
 
-// A closed room of 1 m with a box over 0.3 x 0.4 m of its floor, whose bottom is covered too.
+// A closed room of 1 m with a box on 0.3 x 0.4 m of its floor; the box's bottom is covered too.
 scenes::Scene room_with_box() {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
@@ -43,8 +43,8 @@ double row_sum(const ObjectFormFactors& o, std::size_t i) {
   return std::accumulate(o.F[i].begin(), o.F[i].end(), o.sky[i]);
 }
 
-// The floor's open part sees walls, ceiling and box: nothing is black in a closed room, and A F is
-// the same both ways with the open areas, 1 - 0.3 * 0.4 of the floor.
+// The floor's open part sees walls, ceiling and box: no black backs in a closed room, and A F is
+// symmetric with the open areas, 1 - 0.3 * 0.4 for the floor.
 TEST(CoveredFloor, NothingOfItIsBlackByEitherMethod) {
   const scenes::Scene scene = room_with_box();
   ExactReport report;
@@ -67,9 +67,9 @@ TEST(CoveredFloor, NothingOfItIsBlackByEitherMethod) {
               4.0 * rays.std_error[room_floor][box_side]);
 }
 
-// Points find the open area, and F is over as much as they found: of what that leaves open only the
-// rays' own noise stays in F. The mean square of (F - exact) / std_error is 1, of 400 seeds within
-// 4 sqrt(2 / 400), and 4 % above, as 50 or more degrees of freedom know each standard error.
+// Points estimate the open area, and F is relative to the estimate: only the rays' noise remains in
+// F. The mean square of (F - exact) / std_error is 1, for 400 seeds within 4 sqrt(2 / 400), and up
+// to 4 % more, because each standard error has 50 or more degrees of freedom.
 TEST(CoveredFloor, StandardErrorsHoldWhatPointsLeaveOpenOfTheArea) {
   const scenes::Scene scene = room_with_box();
   ExactReport report;
@@ -85,10 +85,10 @@ TEST(CoveredFloor, StandardErrorsHoldWhatPointsLeaveOpenOfTheArea) {
   EXPECT_NEAR(square, 1.0, 4.0 * std::sqrt(2.0 / seeds) + 0.04);
 }
 
-// A floor that sees nothing but the sky, but for a slab of a tenth of a millimetre on it, sends all
-// of it there however large its open part is found: 64 points in each of 16 replicates leave the
-// area open by about 1.5 % / 4, and that is no error of F. One hit of 1024 rays is the least that
-// is said.
+// A floor that sees only the sky, with a slab of a tenth of a millimetre on it, sends all its light
+// there for any estimate of its open part. 64 points in each of 16 replicates estimate the area
+// with an error of about 1.5 % / 4, which is no error of F. The error of one hit among 1024 rays is
+// the smallest that is stated.
 TEST(CoveredFloor, WhatPointsLeaveOpenOfTheAreaIsNoErrorOfAShareOfIt) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));

@@ -62,8 +62,8 @@ TEST(ObjectFormFactor, ABlockerAtHalfHeightTakesItsExactShare) {
 }
 
 TEST(ObjectFormFactor, RaysGoOnFromAMirrorAndTheRowStillCloses) {
-  // A room whose ceiling is a perfect mirror: by the method of images the floor sees itself twice
-  // as far away, F(floor, floor) = F of facing unit squares 2 m apart = 0.068589588818552.
+  // A room whose ceiling is a perfect mirror: by the method of images the floor sees itself at
+  // twice the distance, F(floor, floor) = F of facing unit squares 2 m apart = 0.068589588818552.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
   scenes::Material mirror = tests::grey(0.0);
@@ -75,10 +75,10 @@ TEST(ObjectFormFactor, RaysGoOnFromAMirrorAndTheRowStillCloses) {
   EXPECT_LE(o.max_row_error, 1e-12);
 }
 
-// Over many seeds the mean square of (F - exact) / std_error is 1 if the errors are honest. Each
-// standard error is itself known to 1 / sqrt(2 n) from n degrees of freedom (16 replicates of every
-// patch and 64 signings: 50 or more here), so that the mean square of m of them lies within
-// 4 sqrt(2 / m) of 1, and up to 4 % above.
+// Over many seeds the mean square of (F - exact) / std_error is 1 if the standard errors are
+// correct. Each standard error has n = 50 or more degrees of freedom here (16 replicates of every
+// patch and 64 sign patterns) and thus a relative error of 1 / sqrt(2 n). The mean square over m
+// values is therefore within 4 sqrt(2 / m) of 1, and up to 4 % above.
 void expect_honest(double mean_square, double m, const char* what) {
   EXPECT_NEAR(mean_square, 1.0, 4.0 * std::sqrt(2.0 / m) + 0.04) << what;
 }
@@ -121,7 +121,7 @@ TEST(ObjectFormFactor, StandardErrorsOfAClosedRoomAreHonestToo) {
       perpendicular += p * p / (3 * seeds);
     }
   }
-  // The three pairs of a room depend on each other through its rows: count them as one.
+  // The three pairs of a room are correlated through its rows: they count as one.
   expect_honest(facing, seeds, "facing");
   expect_honest(perpendicular, seeds, "perpendicular");
 }
@@ -131,7 +131,7 @@ TEST(ObjectFormFactor, ReconciledTablesAreReciprocalAndClosed) {
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.plate(m, 1.0, 0.0, true);
   builder.plate(m, 3.0, 0.4, false);
-  builder.quad(m, {0.6, -1, 0}, {0.6, 1, 0}, {0.6, 1, 0.3}, {0.6, -1, 0.3});  // shows a back too
+  builder.quad(m, {0.6, -1, 0}, {0.6, 1, 0}, {0.6, 1, 0.3}, {0.6, -1, 0.3});  // with a visible back
   const ObjectFormFactors raw = by_rays(builder.scene, 0.3, 256, 1, true);
   const ObjectFormFactors o = by_rays(builder.scene, 0.3, 256);
   EXPECT_GT(raw.max_reciprocity_error, 1e-4);
@@ -145,7 +145,7 @@ TEST(ObjectFormFactor, ASpeckThatNoWallRayMeetsHasItsFactorFromItsOwnRays) {
   // A millimetre square 1 m above the middle of a 10 m square: reciprocity gives F(wall, speck) =
   // F(speck, wall) A_speck / A_wall. From a point at height h over the middle of a square of side
   // 2a, X = a / h = 5: four times the corner's (1 / 2 pi) (X / r atan(Y / r) + Y / r atan(X / r)),
-  // Y = X, r = sqrt(1 + X^2) (Howell B-3); the speck's size changes it by less than 1e-6.
+  // Y = X, r = sqrt(1 + X^2) (Howell B-3); the small square's size changes it by less than 1e-6.
   const double x = 5.0, root = std::sqrt(1.0 + x * x);
   const double up = 4.0 / base::pi * (x / root) * std::atan(x / root);
   tests::SceneBuilder builder;
@@ -159,22 +159,21 @@ TEST(ObjectFormFactor, ASpeckThatNoWallRayMeetsHasItsFactorFromItsOwnRays) {
 }
 
 TEST(ObjectFormFactor, ReplicatesThatAllFindTheSameAreStillInDoubtByOneHit) {
-  // A plate of one patch 1 cm under a large one: 16 rays a replicate all land there, as 0.99999 of
-  // them should. What they found says 0 of the error; one hit more or less among 256 rays is 1 /
-  // 256.
+  // A plate of one patch 1 cm under a large one: all 16 rays of each replicate land there, as
+  // 0.99999 of them should. Their variance is 0; one hit more or less among 256 rays is 1 / 256.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.plate(m, 0.01, 0.0, true);
   builder.plate(m, 10.0, 0.01, false);
   const ObjectFormFactors o = by_rays(builder.scene, 20.0, 256, 1, true);
-  EXPECT_NEAR(o.F[0][1], 1.0, 1e-14);  // sixteen sums of sixteenths
+  EXPECT_NEAR(o.F[0][1], 1.0, 1e-14);  // sum of sixteen sixteenths
   EXPECT_NEAR(o.std_error[0][1], 1.0 / 256.0, 1e-12);
 }
 
 TEST(ObjectFormFactor, TwoEstimatesThatDisagreeWidenTheError) {
-  // A plate with another 15 um above it, which hides it, 100 m from the centre of detail, a plate
-  // of 1 mm. Rays start 24 um above their patch there: the hidden plate sees the ceiling, 0.1998,
-  // the ceiling does not see it. The truth is 0.
+  // A plate hidden by another one 15 um above it, 100 m from the centre of detail, a plate of 1 mm.
+  // Rays start 24 um above their patch there: the hidden plate sees the ceiling, 0.1998, the
+  // ceiling does not see it. The true value is 0.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.plate(m, 1.0, 100.0, true);
@@ -188,7 +187,7 @@ TEST(ObjectFormFactor, TwoEstimatesThatDisagreeWidenTheError) {
   EXPECT_EQ(report.disagreeing_pairs, 1U);
   EXPECT_GT(o.F[0][2], 0.05);
   EXPECT_LE(o.F[0][2], 4.0 * o.std_error[0][2]);
-  EXPECT_LE(o.std_error[1][2], 0.01);  // the plate that is seen
+  EXPECT_LE(o.std_error[1][2], 0.01);  // the visible plate
 }
 
 TEST(ObjectFormFactor, SameBytesOnOneAndTwoThreads) {

@@ -31,7 +31,7 @@ scenes::Scene sphere_and_wall(bool sheets = false) {
   return builder.scene;
 }
 
-// Halves whatever can be halved of the clusters, three times in four.
+// Halves three quarters of the divisible patches of clusters.
 Patches cut_at_random(Patches patches, int rounds) {
   for (int round = 0; round < rounds; ++round) {
     std::vector<Cut> wanted(patches.count(), Cut::None);
@@ -45,7 +45,7 @@ Patches cut_at_random(Patches patches, int rounds) {
   return patches;
 }
 
-// A wall of 64 x 64 x 2 triangles has as many patches as the wall of two.
+// A wall of 64 x 64 x 2 triangles has as many patches as a wall of two triangles.
 TEST(Clusters, AFinelyCutWallHasThePatchesOfTheWall) {
   for (const double edge_m : {0.3, 0.5, 1.0, 2.0}) {
     tests::SceneBuilder fine, plain;
@@ -61,7 +61,7 @@ TEST(Clusters, AFinelyCutWallHasThePatchesOfTheWall) {
   }
 }
 
-// Larger faces, mirrors, glass and single polygons stay what they are.
+// Larger faces, mirrors, glass and single polygons are not clustered.
 TEST(Clusters, ScenesOfLargeFacesHaveNone) {
   tests::SceneBuilder builder;
   builder.room({builder.material(tests::grey(0.5)), 0, 0, 0, 0, 0});
@@ -76,8 +76,8 @@ TEST(Clusters, ScenesOfLargeFacesHaveNone) {
   EXPECT_EQ(subdivide(shiny.scene, 1.0, 1.0).clustered, nullptr);
 }
 
-// Neither objects and materials nor creases are bridged: the patches of a finely cut cube have one
-// normal each.
+// Clusters do not cross objects, materials or creases: each patch of a finely divided cube has one
+// normal.
 TEST(Clusters, EdgesOfABodyPartThem) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
@@ -95,7 +95,7 @@ TEST(Clusters, EdgesOfABodyPartThem) {
   }
   builder.scene.triangles.back().object = 1;
   EXPECT_EQ(subdivide(builder.scene, 2.0, 2.0).count(), 3U);
-  // Two treads and the riser between them: the treads are alike, but do not hang together.
+  // Two treads and the riser between them: the treads have equal normals but are not connected.
   tests::SceneBuilder stair;
   stair.material(tests::grey(0.5));
   tests::fine_wall(stair, m, {0, 0, 0}, {0.4, 0, 0}, {0, 1, 0}, 8);
@@ -105,8 +105,8 @@ TEST(Clusters, EdgesOfABodyPartThem) {
   EXPECT_EQ(subdivide(stair.scene, 2.0, 2.0).count(), 3U);
 }
 
-// However it is halved: every triangle is in as many patches of its side as hold its area, patches
-// of a cluster add up to it, and the two halves of a patch to the patch.
+// For any divisions: the patches of a side that contain a triangle cover its area once, patches of
+// a cluster add up to it, and the two halves of a patch to the patch.
 TEST(Clusters, HalvesCoverTheTrianglesOnce) {
   const scenes::Scene scene = sphere_and_wall(true);
   const Patches whole = subdivide(scene, 0.6, 0.6);
@@ -147,8 +147,8 @@ TEST(Clusters, HalvesCoverTheTrianglesOnce) {
   }
 }
 
-// The place of a point, looked up as a ray's hit is, is its patch; single precision of the ray
-// counters finds the same but at borders.
+// Searching a point's position like a ray's hit finds its patch; the ray counters' single precision
+// finds the same except at borders.
 TEST(Clusters, APointsPlaceFindsItsPatch) {
   const scenes::Scene scene = sphere_and_wall(true);
   const Patches patches = cut_at_random(subdivide(scene, 0.6, 0.6), 9);
@@ -176,10 +176,10 @@ TEST(Clusters, APointsPlaceFindsItsPatch) {
   EXPECT_LT(other, tried / 1000);
 }
 
-// Points of a cluster fall on each triangle in proportion to its area, here from 1/16 to 7/16 wide:
-// of n = 2^16 points of a lattice in x a triangle of share p gets n p to within one, as its part of
-// x is one interval; and over a triangle their mean is its centre: with x and y even, to 1 % of its
-// size.
+// Points of a cluster are distributed over the triangles in proportion to area, here from 1/16 to
+// 7/16: of n = 2^16 points of a lattice in x a triangle with share p gets n p to within one, as its
+// part of x is one interval. Over a triangle their mean is its centre: for uniform x and y, to 1 %
+// of its size.
 TEST(Clusters, PointsAreUniformInArea) {
   tests::SceneBuilder builder;
   tests::fine_wall(builder, builder.material(tests::grey(0.5)), {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4);
@@ -209,7 +209,7 @@ TEST(Clusters, PointsAreUniformInArea) {
   }
 }
 
-// The layout that a file keeps brings the same patches back.
+// The stored layout reproduces the patches.
 TEST(Clusters, ALayoutComesBack) {
   const scenes::Scene scene = sphere_and_wall(true);
   const Patches patches = cut_at_random(subdivide(scene, 0.6, 0.6), 8);
@@ -226,13 +226,13 @@ TEST(Clusters, ALayoutComesBack) {
   bad.cluster_edge_m = 0.0;
   EXPECT_THROW((void)rebuild_patches(scene, bad), std::invalid_argument);
   bad = layout_of(patches);
-  for (std::uint32_t& entry : bad.tree) {  // several triangles halved along t
+  for (std::uint32_t& entry : bad.tree) {  // a cell of several triangles halved along t
     if ((entry & Patches::split_cell) != 0) entry |= Patches::halves_t;
   }
   EXPECT_THROW((void)rebuild_patches(scene, bad), std::invalid_argument);
 }
 
-// The box and the rectangle of a patch hold its points.
+// The box and the rectangle of a patch contain its points.
 TEST(Clusters, BoxesHoldTheirPoints) {
   const scenes::Scene scene = sphere_and_wall();
   const Patches patches = cut_at_random(subdivide(scene, 0.6, 0.6), 5);

@@ -11,7 +11,7 @@ namespace earthshine::radiosity {
 namespace {
 
 // A square of 2 m in the plane z = 0, u along x and v along y, its left half black and its right
-// half white. With holes the left half is not there.
+// half white. With holes the left half is missing.
 scenes::Scene textured_square(bool as_parallelogram, int white = 255, bool holes = false) {
   tests::SceneBuilder builder;
   base::Pixels pixels{2, 1, {0, 0, 0, static_cast<std::uint8_t>(holes ? 0 : 255)}};
@@ -50,17 +50,17 @@ TEST(PatchAlbedo, MaterialHasTheMeanOfItsTextureAndPatchesHaveTheirs) {
       }
       const bool on_left = high <= 1e-9, on_right = low >= -1e-9;
       if (on_left || on_right) {
-        // k_d = 0.8 there by the texture's mean, which the lattice finds to 1e-3.
+        // k_d = 0.8 there by the texture's mean, which the sample lattice finds to 1e-3.
         EXPECT_NEAR(rho.r, on_left ? 0.0 : 0.8, 0.8 * 2e-3);
       }
       EXPECT_NEAR(PatchAlbedos(scene).of(patches, i).r, rho.r, 1e-12);
     }
-    EXPECT_NEAR(sum, 0.4 * 4.0, 0.01);  // what the square reflects in all
+    EXPECT_NEAR(sum, 0.4 * 4.0, 0.01);  // total reflectance of the square
   }
 }
 
-// Of patches over both halves: the square is white by half; of its halves along the diagonal from
-// (-1, -1) to (1, 1) the lower one by 3/4, the upper one by 1/4.
+// Patches over both halves: half of the square is white; of its halves along the diagonal from (-1,
+// -1) to (1, 1) the lower one by 3/4, the upper one by 1/4.
 TEST(PatchAlbedo, IsTheMeanByArea) {
   for (const bool as_parallelogram : {true, false}) {
     const scenes::Scene scene = textured_square(as_parallelogram);
@@ -73,7 +73,7 @@ TEST(PatchAlbedo, IsTheMeanByArea) {
   }
 }
 
-// Of one patch over both halves: the white one times 0.8. Over all of it that would be 0.4.
+// One patch over both halves: 0.8 times the white half. Over the whole area it would be 0.4.
 TEST(PatchAlbedo, IsTheMeanOfWhatIsThere) {
   const scenes::Scene scene = textured_square(true, 255, true);
   EXPECT_NEAR(patch_diffuse(scene, subdivide(scene, 10.0), 0).r, 0.8, 1e-9);

@@ -12,7 +12,7 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr std::uint32_t split = Patches::split_cell;  // in halves along s,
+constexpr std::uint32_t split = Patches::split_cell;  // halves along s,
 constexpr std::uint32_t split_t = Patches::split_cell | Patches::halves_t;
 
 // A square sheet and a triangle.
@@ -27,8 +27,8 @@ scenes::Scene sheet_and_triangle() {
   return builder.scene;
 }
 
-// The sheet is one cell, halved along s and then t, its last quarter likewise: 7 leaves a side. The
-// triangle (area 1) is a row of two cells, cut at half its length: 1/4 and 3/4 of the area.
+// The sheet is one cell, halved along s and then t, its last quarter likewise: 7 leaves per side.
+// The triangle (area 1) is a row of two cells, divided at half its length: 1/4 and 3/4 of the area.
 PatchLayout split_layout() {
   PatchLayout layout;
   layout.s_count = {1, 2};
@@ -52,7 +52,7 @@ TEST(PatchLayout, SplitCellsComeBackAsTheirTreeSays) {
   const Patches patches = rebuild_patches(scene, split_layout());
   ASSERT_EQ(patches.count(), 16U);
   for (std::uint32_t i = 0; i < patches.count(); ++i) {
-    // A patch covers the area it is said to have, and its middle finds it.
+    // A patch covers its stated area, and its middle is found in it.
     const auto c = patches.corners(i);
     const double area = 0.5 * glm::length(glm::cross(c[2] - c[0], c[3] - c[1]));
     EXPECT_NEAR(area, patches.area_m2[i], 1e-12) << i;
@@ -98,7 +98,7 @@ TEST(PatchLayout, WhateverIsNotOneLeafPerPatchIsRefused) {
       [](PatchLayout& l) { l.tree_start[0] = no_tree; },
       [](PatchLayout& l) { l.tree_start[0] = 13; },
       [](PatchLayout& l) { l.tree_start[1] = 1; },
-      [](PatchLayout& l) { l.tree[0] = split | 0; },  // a pair that holds itself
+      [](PatchLayout& l) { l.tree[0] = split | 0; },  // a pair that contains itself
       [](PatchLayout& l) { l.tree[6] = split | 1; },
       [](PatchLayout& l) { l.tree[6] = split | 12; },
       [](PatchLayout& l) { l.tree[6] = 3; },
@@ -146,7 +146,7 @@ TEST(PatchLayout, AnyNumbersAreEitherRefusedOrWholePatches) {
   EXPECT_GT(refused, 15000);
 }
 
-// Every pair's first half is the next pair; areas are right.
+// Every pair's first half is the next pair; areas are correct.
 PatchLayout chain(std::uint32_t levels) {
   PatchLayout layout = split_layout();
   layout.tree = {split | 1};

@@ -21,8 +21,7 @@ scenes::Scene assorted_scene() {
   const auto v = static_cast<std::uint32_t>(builder.scene.vertices.size());
   builder.scene.vertices.insert(builder.scene.vertices.end(),
                                 {{0, 9, 0}, {7, 9, 0}, {7, 9.4, 0.2}});
-  for (std::uint32_t turn = 0; turn < 3;
-       ++turn) {  // each corner takes its turn as the first vertex
+  for (std::uint32_t turn = 0; turn < 3; ++turn) {  // each corner in turn is the first vertex
     builder.scene.triangles.push_back(
         {{v + turn, v + (turn + 1) % 3, v + (turn + 2) % 3}, 0, plain, 100 + turn});
   }
@@ -66,7 +65,7 @@ TEST(Patches, ARayAtAPointOfAPatchFindsThatPatch) {
   base::Rng rng(base::Key(1, base::Stream::Test, 0));
   std::size_t tested = 0;
   for (std::uint32_t i = 0; i < patches.count(); ++i) {
-    if (patches.facets[patches.facet[i]].triangle >= 5) continue;  // the turned copies coincide
+    if (patches.facets[patches.facet[i]].triangle >= 5) continue;  // the rotated copies coincide
     const double x = 0.02 + 0.96 * rng.next();
     const double y = 0.02 + 0.96 * rng.next();
     const Vec3 normal = patches.normal(i);
@@ -89,7 +88,7 @@ TEST(Patches, PointAndParametersAreInverseOnEveryTurnOfATriangle) {
     const Vec3 a = scene.vertices[vertex[0]];
     const Vec3 e1 = scene.vertices[vertex[1]] - a, e2 = scene.vertices[vertex[2]] - a;
     const Vec3 p = patches.point(i, 0.3, 0.7) - a;
-    // Barycentric weights by the normal equations.
+    // Barycentric weights from the normal equations.
     const double g11 = glm::dot(e1, e1), g12 = glm::dot(e1, e2), g22 = glm::dot(e2, e2);
     const double d = g11 * g22 - g12 * g12;
     const double u = (g22 * glm::dot(p, e1) - g12 * glm::dot(p, e2)) / d;
@@ -99,8 +98,8 @@ TEST(Patches, PointAndParametersAreInverseOnEveryTurnOfATriangle) {
 }
 
 TEST(Patches, PointsAreUniformInArea) {
-  // Midpoints of 64 x 64 cells of (x, y): their mean is the patch's centroid but for O(1 / 64^2) of
-  // its size. The centroid of a triangle in one patch is the mean of its corners.
+  // Midpoints of 64 x 64 cells of (x, y): their mean is the patch's centroid except for O(1 / 64^2)
+  // of its size. The centroid of a triangle in one patch is the mean of its corners.
   const scenes::Scene scene = assorted_scene();
   const Patches patches = subdivide(scene, 100.0);
   const std::uint32_t i = patches.find(4, 0.3, 0.3, true);
@@ -123,7 +122,7 @@ TEST(Patches, NoCellIsLongerThanTheEdge) {
 }
 
 TEST(Patches, ALongThinTriangleIsCutAlongItsLengthOnly) {
-  // 7 m by 0.45 m: cells of about half a metre want 14 or 15 rows and one column, not 15 x 15.
+  // 7 m by 0.45 m: cells of about half a metre need 14 or 15 rows and one column, not 15 x 15.
   const Patches patches = subdivide(assorted_scene(), 0.5);
   for (const Facet& f : patches.facets) {
     if (f.parallelogram) continue;

@@ -20,7 +20,7 @@ void add_triangle(tests::SceneBuilder& builder, std::uint32_t material, const Ve
   builder.scene.triangles.push_back({{v, v + 1, v + 2}, 0, material, 1000 + number});
 }
 
-// A parallelogram, a sheet, a sliver of a triangle (9 m by 3 cm) and a plain triangle.
+// A parallelogram, a sheet, a sliver triangle (9 m by 3 cm) and an ordinary triangle.
 scenes::Scene mixed_scene() {
   tests::SceneBuilder builder;
   const std::uint32_t plain = builder.material(tests::grey(0.5));
@@ -103,7 +103,7 @@ TEST(Split, HalvingEveryCellBothWaysIsTheGridOfHalfTheEdge) {
 
 TEST(Split, BothSidesOfASheetShareTheTree) {
   Patches patches = subdivide(mixed_scene(), 0.7);
-  for (int round = 0; round < 5; ++round) {  // wanted on the back only
+  for (int round = 0; round < 5; ++round) {  // requested on the back only
     std::vector<Cut> wanted(patches.count(), Cut::None);
     for (std::uint32_t i = 0; i < patches.count(); i += 2) {
       if (patches.is_back[i] != 0) wanted[i] = round % 2 == 0 ? Cut::S : Cut::T;
@@ -146,7 +146,7 @@ TEST(Split, ACellThatSinglePrecisionCannotTellFromItsNeighbourStaysWhole) {
 }
 
 TEST(Split, CellSizesAreThoseOfBothSidesOfASheet) {
-  // 7 m x 0.4 m, cut in cells of at most 0.7 m: 10 x 1 cells of 0.7 m x 0.4 m.
+  // 7 m x 0.4 m, divided into cells of at most 0.7 m: 10 x 1 cells of 0.7 m x 0.4 m.
   tests::SceneBuilder builder;
   scenes::Material sheet = tests::grey(0.5);
   sheet.two_sided = true;
@@ -167,7 +167,7 @@ TEST(Split, GradedNeighboursAreAtMostTwiceAsLong) {
     const Facet& facet = patches.facets[patches.facet[i]];
     const std::uint32_t first = patches.is_back[i] != 0 ? facet.first_back : facet.first_front;
     const Rectangle r = patches.rectangle(i);
-    const double step = 1e-7, x = rng.next();  // along the right and upper side
+    const double step = 1e-7, x = rng.next();  // beyond the right and the upper side
     for (const Parameters& p : {Parameters{r.s1 + step, r.t0 + x * (r.t1 - r.t0)},
                                 Parameters{r.s0 + x * (r.s1 - r.s0), r.t1 + step}}) {
       if (p.s > 1.0 || p.t > 1.0) continue;

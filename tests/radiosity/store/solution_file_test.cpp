@@ -15,7 +15,7 @@
 namespace earthshine::radiosity {
 namespace {
 
-// A grey room with a black wall, a sheet standing in it, a bright patch and a lamp.
+// A grey room with a black wall, a standing sheet, a bright patch and a lamp.
 scenes::Scene lit_room() {
   tests::SceneBuilder builder;
   const std::uint32_t grey = builder.material(tests::grey(0.5));
@@ -39,7 +39,7 @@ scenes::Scene lit_room() {
 
 SolveOptions coarse_options() { return {0.25, 64, 1e-8, 1}; }
 
-// A scene with what is solved of it, written and read at will.
+// A scene with its solution, which can be written and read.
 struct Stored {
   test::TemporaryFolder folder;
   std::filesystem::path path = folder / "room.h5";
@@ -116,7 +116,7 @@ TEST(SolutionFile, WhatIsReadIsBitForBitWhatWasWritten) {
 }
 
 TEST(SolutionFile, RadiosityIsReflectanceTimesDirectAndIndirectIlluminance) {
-  // B = M + rho (E0 + F B); the bright patch's own exitance goes by explicit sampling.
+  // B = M + rho (E0 + F B); the bright patch's exitance is sampled explicitly.
   const Stored stored;
   const Solution read = stored.read();
   for (std::uint32_t i = 0; i < read.patches.count(); ++i) {
@@ -187,7 +187,7 @@ TEST(SolutionFile, TheEarthsAlbedoByLatitudeBelongsToTheSky) {
     return scene_parts(scene, scenes::find_light_groups(scene)).back().digest;
   };
   std::vector<std::uint64_t> digests = {sky()};
-  scene.orbit->inclination_deg = 28.5;  // sets the pole alone, which this Earth does not have
+  scene.orbit->inclination_deg = 28.5;  // sets only the pole, which this Earth does not use
   scene.orbit->position_deg = 5.0;
   EXPECT_EQ(sky(), digests[0]);
   scene.earth->by_latitude.emplace();
@@ -222,7 +222,7 @@ TEST(SolutionFile, AChangedOptionIsNamedWithBothValues) {
 }
 
 TEST(SolutionFile, FewerSamplesOfDirectLightAreNamedAndTheWholeNumbersAreNot) {
-  // Files of before there was a choice have no such numbers, and stay good.
+  // Older files lack these numbers and remain valid.
   const auto named = [](const SolveOptions& options, const std::string& key) {
     const std::vector<SolveKnob> knobs = solve_knobs(options);
     return std::any_of(knobs.begin(), knobs.end(),
@@ -248,7 +248,7 @@ TEST(SolutionFile, WhatRadiosityDoesNotReadDoesNotMakeItStale) {
   for (scenes::Material& material : scene.materials) {
     material.name += " paint";
   }
-  scene.materials.push_back(tests::grey(0.9, 1.0));  // nothing wears it
+  scene.materials.push_back(tests::grey(0.9, 1.0));  // unused
   EXPECT_EQ(stored.read(scene, stored.options).radiosity, stored.solution.radiosity);
 }
 

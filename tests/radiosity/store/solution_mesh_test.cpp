@@ -11,7 +11,7 @@
 namespace earthshine::radiosity {
 namespace {
 
-// A scene cut into patches, with one light group and the radiosity that a test gives each patch.
+// A scene divided into patches, with one light group and a given radiosity for each patch.
 template <class Value>
 Solution given(const scenes::Scene& scene, double edge_m, Value value,
                double cluster_edge_m = 0.0) {
@@ -34,8 +34,8 @@ Vec3 colour(const scenes::GltfPart& part, std::size_t k) {
 }
 
 TEST(SolutionMesh, ColoursTimesTheirUnitAreTheRadiosity) {
-  // Two plates of one radiosity each: the mean of logarithms, 0.18 of the unit, is that of 1 and 4,
-  // which is 2. Grey has its radiosity as luminance.
+  // Two plates with one radiosity each: the log-mean, 0.18 of the unit, of 1 and 4 is 2. Grey has
+  // its radiosity as luminance.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.plate(m, 1.0, 0.0, true);
@@ -54,7 +54,7 @@ TEST(SolutionMesh, ColoursTimesTheirUnitAreTheRadiosity) {
   }
 }
 
-// Plates of radiosity 1, the last of 1000.
+// Plates of radiosity 1; the last one has 1000.
 SolutionMesh with_a_bright_one(int plates) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
@@ -97,15 +97,15 @@ TEST(SolutionMesh, FacesLookTheWayTheirPatchesDo) {
     const Vec3 a = vertex(part, part.indices[k]), b = vertex(part, part.indices[k + 1]),
                c = vertex(part, part.indices[k + 2]);
     const Vec3 area = 0.5 * glm::cross(b - a, c - a);
-    EXPECT_GT(glm::length(area), 1e-6);  // no triangle without area, at the apex either
+    EXPECT_GT(glm::length(area), 1e-6);  // no triangle without area, including the apex
     (a.z > 0.5 ? tilted : area.z > 0.0 ? up : down) += area.z;
   }
   EXPECT_NEAR(up, 1.0, 1e-6);      // the sheet's front
   EXPECT_NEAR(down, -1.0, 1e-6);   // its back
-  EXPECT_NEAR(tilted, 1.0, 1e-6);  // the triangle's front alone
+  EXPECT_NEAR(tilted, 1.0, 1e-6);  // the triangle's front only
 }
 
-// Radiosity 1 for x < 0, else 3; two cells of one square metre beside each other.
+// Radiosity 1 for x < 0, else 3; two adjacent cells of one square metre.
 template <class Build>
 std::vector<double> colours_at_the_seam(Build build) {
   tests::SceneBuilder builder;
@@ -165,7 +165,7 @@ TEST(SolutionMesh, EmittingSurfacesShineAndADarkSceneIsBlack) {
   EXPECT_EQ(colour(nothing.parts[1], 0), Vec3(0.0));
 }
 
-// A sheet of 128 triangles in one cluster: all of them are there, facing their side.
+// A sheet of 128 triangles in one cluster: all of them exist, facing their side.
 TEST(SolutionMesh, BothSidesOfAClusterHaveAllItsTriangles) {
   tests::SceneBuilder builder;
   scenes::Material sheet = tests::grey(0.5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lamps that no surface and no camera is in reach of.
+// Lamps that reach no surface and no camera.
 #include <gtest/gtest.h>
 
 #include "base/numbers/random.h"
@@ -8,13 +8,13 @@
 namespace earthshine::scenes {
 namespace {
 
-// A lamp of half width w in the plane z = -h, tilted by 45 degrees about y, reaches up to
-// -h + w sin 45: the floor's front sees it from there on. The disk's own radius bounds its reach.
+// A lamp of half width w in the plane z = -h, tilted by 45 degrees about y, extends up to -h + w
+// sin 45: above 0 it lights the floor's front. The disk's radius bounds its extent.
 TEST(Culling, LampsBehindEverySurfaceAreSkipped) {
   const double tilted = 0.25 * std::sqrt(0.5), edge = 1e-3;
   struct Case {
     LampKind kind;
-    double depth_m;  // at which it just cannot shine on the front
+    double depth_m;  // at which it just fails to light the front
   };
   for (const Case& c : {Case{LampKind::Point, 0.0}, Case{LampKind::Measured, 0.0},
                         Case{LampKind::Rectangle, tilted}, Case{LampKind::Disk, 0.25}}) {
@@ -32,8 +32,8 @@ TEST(Culling, LampsBehindEverySurfaceAreSkipped) {
   }
 }
 
-// Shining upward from above the floor: a flat lamp and a spot of up to 180 degrees have no light
-// for what is behind their plane; a point lamp has no axis and shines all around.
+// Lamps above the floor that emit upward: a flat lamp and a spot of up to 180 degrees do not light
+// what is behind their plane; a point lamp has no axis and emits in all directions.
 TEST(Culling, FlatLampsAndSpotsShineOnlyForward) {
   for (const LampKind kind :
        {LampKind::Point, LampKind::Spot, LampKind::Rectangle, LampKind::Disk}) {
@@ -51,7 +51,7 @@ TEST(Culling, FlatLampsAndSpotsShineOnlyForward) {
   }
 }
 
-// Spots and quads at random: where any point of a quad's front is in the cone the spot is on.
+// Random spots and quads: if any point of a quad's front is in the cone, the spot is on.
 TEST(Culling, ASpotIsSkippedOnlyIfNoPointOfASurfaceIsInItsCone) {
   std::size_t skipped = 0;
   for (std::uint64_t trial = 0; trial < 400; ++trial) {
@@ -76,11 +76,11 @@ TEST(Culling, ASpotIsSkippedOnlyIfNoPointOfASurfaceIsInItsCone) {
     }
     EXPECT_FALSE(off && lit) << trial;
   }
-  EXPECT_GT(skipped, 100U);  // and it does skip
+  EXPECT_GT(skipped, 100U);  // some spots are skipped
   EXPECT_LT(skipped, 390U);
 }
 
-// The lens reaches half its aperture above the camera: a millimetre below and above the plane.
+// The lens extends half its aperture above the camera: one millimetre below and above the plane.
 TEST(Culling, AFlatLampIsKeptWhileACameraOrItsLensMaySeeItShine) {
   for (const double aperture : {0.0, 0.2}) {
     for (const double over : {-1e-3, 1e-3}) {

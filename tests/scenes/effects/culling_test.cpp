@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is skipped must not be able to matter. Each bound is walked up to from both sides: the last
-// case where light just cannot arrive, and the first where it can.
+// Only effects that cannot matter are skipped. Each bound is tested from both sides: the last case
+// in which light cannot arrive, and the first in which it can.
 #include <gtest/gtest.h>
 
 #include "tests/scenes/culling_scenes.h"
@@ -8,8 +8,8 @@
 namespace earthshine::scenes {
 namespace {
 
-// A disc whose centre stands h below the horizon and whose radius is r shows above it if h < r. It
-// is left on where it just touches: rounding of the direction must not decide.
+// A disc of radius r whose centre is h below the horizon is partly above it if h < r. A disc that
+// just touches stays on: rounding of the direction must not decide.
 TEST(Culling, ADiscOnTheHorizonStaysOnAndOneBelowIsSkipped) {
   for (const double radius : {0.0, 0.2666, 5.0, 60.0, 89.0}) {
     for (const double below : {-1e-3, 0.0, 1e-3}) {
@@ -19,7 +19,8 @@ TEST(Culling, ADiscOnTheHorizonStaysOnAndOneBelowIsSkipped) {
       scene.sun = sun_at(-radius - below, radius);
       scene.earth = earth_at(-radius - below, radius);
       const Found found = look(scene);
-      // Near the nadir sines hardly move: 1e-3 deg below 89 deg is 3e-7, within the rounding kept.
+      // Near the nadir sines barely change: 1e-3 deg below 89 deg is 3e-7, within the rounding
+      // margin.
       const bool skipped = below > 0.0 && radius < 80.0;
       EXPECT_EQ(found.has("sun"), skipped);
       EXPECT_EQ(found.has("penumbra"), skipped && radius > 0.0);  // a point has none
@@ -55,8 +56,8 @@ TEST(Culling, SheetsAndGlassTakeLightFromBehind) {
   }
 }
 
-// The highlights and the gloss of an Earth that is never up need no rays either, and the table must
-// not say that they run.
+// Highlights and gloss of an Earth that is never up need no rays, and the table must list them as
+// skipped.
 TEST(Culling, WhatLivesOnLightThatIsSkippedIsSkippedWithIt) {
   Material shiny = tests::grey(0.5);
   shiny.specular = Rgb(0.2);
@@ -118,7 +119,7 @@ TEST(Culling, InterreflectionStaysWhereASurfaceHasOneInFrontOfIt) {
   EXPECT_TRUE(facing(true, 1.0, true));
   EXPECT_TRUE(facing(false, -1.0, true));
 
-  // A wall that stands on the floor: tilted toward it, upright, tilted away.
+  // A wall on the floor: tilted toward it, upright, tilted away.
   for (const double tilt : {-0.1, 0.0, 0.1}) {
     tests::SceneBuilder builder = floor_of(tests::grey(0.5));
     builder.quad(0, {1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {1, 1, 0});
@@ -127,7 +128,7 @@ TEST(Culling, InterreflectionStaysWhereASurfaceHasOneInFrontOfIt) {
     builder.scene.vertices[6] = {1 + tilt, 1, 1};
     builder.scene.vertices[7] = {1, 1, 0};
     builder.scene.sun = sun_at(89.0, 0.0);
-    // Its front looks along -x: the floor is in front of it wherever it stands at the edge x = 1.
+    // Its front faces -x: the floor is in front of it for any tilt at the edge x = 1.
     EXPECT_FALSE(look(builder.scene).has("interreflection")) << tilt;
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faces in one plane: which are found, and which one is met by rays.
+// Coplanar faces: which pairs are found, and which face rays hit.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ constexpr const char* head =
     "diffuse = 0.5\ntwo_sided = true\n[[material]]\nname = \"grey\"\ndiffuse = "
     "0.3\n[[material]]\nname = \"lamp\"\nemit = 10\n";
 
-// A square about (x, 0) with the edge 2 h in the plane z, that looks up or down.
+// A square about (x, 0) with the edge 2 h in the plane z, facing up or down.
 std::string square(const char* name, double x, double h, double z, bool up,
                    const char* material = "white") {
   const double y = up ? h : -h;
@@ -43,8 +43,8 @@ std::string box(const char* name, const Vec3& low, const Vec3& high) {
 
 Scene read_scene(const std::string& objects) { return test::SceneFolder().read(head + objects); }
 
-// The name of what a ray meets that comes down, or up, through (x, y, 0); "back of ..." if it meets
-// a black back, "" if nothing.
+// The object hit by a ray down, or up, through (x, y, 0); "back of ..." for a black back, "" for no
+// hit.
 std::string met(const Scene& scene, double x, double y, bool down) {
   const RayQuery query(scene);
   const Hit hit = query.closest({x, y, down ? 5.0 : -5.0}, {0, 0, down ? -1.0 : 1.0});
@@ -57,7 +57,7 @@ std::string met(const Scene& scene, double x, double y, bool down) {
   return (black ? "back of " : "") + scene.objects[triangle.object].name;
 }
 
-// Of (0.2, 0.1, 0) on a triangle.
+// Barycentric coordinates of (0.2, 0.1, 0) on a triangle.
 Barycentric barycentric(const Scene& scene, std::uint32_t t) {
   const auto& v = scene.triangles[t].vertex;
   const Vec3 a = scene.vertices[v[0]];
@@ -68,7 +68,7 @@ Barycentric barycentric(const Scene& scene, std::uint32_t t) {
 TEST(CoincidentFaces, TheLaterOfTwoOpenOnesIsOver) {
   const Scene scene =
       read_scene(square("plate", 0, 2, 0, true) + square("decal", 1, 0.5, 0, true, "paper"));
-  // The decal's two triangles on the plate's two: its diagonal runs beside the plate's.
+  // The decal's two triangles against the plate's two; their diagonals are parallel.
   EXPECT_EQ(scene.coincident.size(), 2U);
   EXPECT_TRUE(holds(warnings(scene), {"\"plate\" and \"decal\": 1 m2", "those of \"decal\""}))
       << warnings(scene);
@@ -82,7 +82,7 @@ TEST(CoincidentFaces, TheLaterOfTwoOpenOnesIsOver) {
 }
 
 TEST(CoincidentFaces, WhatIsNearerBySomeOffsetIsOverWhateverItsPlace) {
-  // Of the extent of 5.7 m rays are lifted 23 um.
+  // At the extent of 5.7 m the ray offset is 23 um.
   for (const double lift : {4e-6, 1e-5}) {
     const Scene scene =
         read_scene(square("decal", 1, 0.5, lift, true) + square("plate", 0, 2, 0, true));
@@ -120,8 +120,8 @@ TEST(CoincidentFaces, OpenOnesBackToBackAreTheSidesOfASheet) {
   EXPECT_TRUE(holds(warnings(scene), {"3 m2", "back to back"})) << warnings(scene);
 }
 
-// Whichever comes first in the scene, and nearer by less than rays are lifted: one that went on
-// from the glass would begin beyond the plate.
+// In either order in the scene, and nearer than the ray offset: a ray continuing from the glass
+// would start beyond the plate.
 TEST(CoincidentFaces, WhatIsOpaqueIsMetWhereGlassLiesOnIt) {
   const std::string glass = "[[material]]\nname = \"glass\"\ntransmit = 0.8\n";
   const std::string plate = square("plate", 0, 2, 0, true);
@@ -147,8 +147,8 @@ TEST(CoincidentFaces, WhatIsOpaqueIsMetWhereGlassLiesOnIt) {
                   .coincident.empty());
 }
 
-// Whether the fronts of a box's faces are covered at its bottom, x = 0.2, and those of the other
-// object there.
+// Whether the front of the box's bottom face at x = 0.2, and of the other object's face there, are
+// covered.
 std::pair<bool, bool> covered(const Scene& scene) {
   const CoincidentFaces faces(scene);
   std::pair<bool, bool> found;
@@ -179,7 +179,8 @@ TEST(CoincidentFaces, TheWallsOfAHouseAreSeenFromBothSides) {
   EXPECT_EQ(met(house, 0.2, 0.1, true), "box");
 }
 
-// Written by another program: the room is a millionth larger. Or it is six squares, no closed room.
+// As written by another program: the room is a millionth larger. Or six squares that form no closed
+// room.
 TEST(CoincidentFaces, WhatIsInAHouseIsSeenHoweverItsWallsWereMade) {
   const std::string body = box("box", Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 1));
   const double h = 0.5 * (1.0 + 1e-6);
@@ -190,7 +191,7 @@ TEST(CoincidentFaces, WhatIsInAHouseIsSeenHoweverItsWallsWereMade) {
   EXPECT_EQ(covered(read_scene(body + square("floor", 0, 0.5, 0, true))), std::pair(false, false));
 }
 
-// What stands beside a room, wall on wall, does not show in it, listed before it or after.
+// A body beside a room, wall on wall, is not visible inside it, in either order in the scene.
 TEST(CoincidentFaces, ARoomsWallIsOverTheBodyBehindIt) {
   const std::string room = box("room", Vec3(-1, -1, 0), Vec3(1, 1, 1)) + "inward = true\n";
   const std::string under = box("under", Vec3(-1, -1, -1), Vec3(1, 1, 0));
@@ -202,14 +203,14 @@ TEST(CoincidentFaces, ARoomsWallIsOverTheBodyBehindIt) {
   }
 }
 
-// The two sides of a sheet and a third over both: one of them takes the light of each side.
+// The two sides of a sheet and a third face over both: one of them receives the light on each side.
 TEST(CoincidentFaces, SomethingIsAlwaysSeen) {
   const Scene scene = read_scene(square("up", 0, 1, 0, true) + square("down", 0, 1, 0, false) +
                                  square("sheet", 0, 1, 0, true, "paper"));
   EXPECT_EQ(met(scene, 0.2, 0.1, true), "sheet");
   EXPECT_EQ(met(scene, 0.2, 0.1, false), "sheet");
   const CoincidentFaces faces(scene);
-  bool open[2] = {false, false};  // a side that light comes to, by whether it looks up
+  bool open[2] = {false, false};  // open sides, by direction up
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
     for (const bool front : {true, false}) {
       const bool sheet = scene.materials[scene.triangles[t].material].two_sided;
@@ -222,7 +223,7 @@ TEST(CoincidentFaces, SomethingIsAlwaysSeen) {
   EXPECT_TRUE(open[0] && open[1]);
 }
 
-// Where single precision has steps of 3 cm.
+// At coordinates where single precision has steps of 3 cm.
 TEST(CoincidentFaces, AreFoundFarFromTheOrigin) {
   const std::string sphere =
       "shape = \"sphere\"\nradius = 0.5\nsegments = 100\nmaterial = \"white\"\n";
@@ -232,7 +233,7 @@ TEST(CoincidentFaces, AreFoundFarFromTheOrigin) {
   EXPECT_EQ(scene.objects.size(), 2U);
 }
 
-// The pairs that a comparison of each of the first `few` boxes with all after it finds.
+// Pairs found by comparing each of the first `few` boxes with all later ones.
 void expect_pairs_of_comparison(const std::vector<LabelledBox>& boxes, std::size_t few) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> expected, found;
   for (std::uint32_t a = 0; a < few; ++a) {
@@ -252,7 +253,7 @@ void expect_pairs_of_comparison(const std::vector<LabelledBox>& boxes, std::size
   EXPECT_EQ(found, expected);
 }
 
-// 300 random boxes of 40 labels: the pairs that a comparison of all with all finds, once each.
+// 300 random boxes with 40 labels: the same pairs as by comparing all with all, once each.
 TEST(BoxJoin, FindsEachPairThatMeetsOnce) {
   base::Rng random(base::Key(3, base::Stream::Test, 0));
   const auto number = [&](double most) { return static_cast<float>(most * random.next()); };
@@ -266,8 +267,8 @@ TEST(BoxJoin, FindsEachPairThatMeetsOnce) {
   expect_pairs_of_comparison(boxes, boxes.size());
 }
 
-// 40 random boxes over a sheet of 90 000 that touch each other: the pairs that a comparison of each
-// of the 40 with all finds.
+// 40 random boxes over a sheet of 90 000 adjacent boxes: the same pairs as by comparing each of the
+// 40 with all.
 TEST(BoxJoin, FindsTheFewThatMeetAmongMany) {
   base::Rng random(base::Key(4, base::Stream::Test, 0));
   const auto number = [&](double most) { return static_cast<float>(most * random.next()); };

@@ -30,7 +30,7 @@ Crossings crossings(const std::string& objects) {
 
 const std::string unit_cube = body("a", "[0, 0, 0]", "[1, 1, 1]");
 
-// The face x = 1 of the unit_cube is met along the outline of the second box there, 4 x 0.6 m.
+// The face x = 1 of unit_cube cuts the second box along its outline there, 4 x 0.6 m.
 TEST(Crossings, OfABoxInACubeAreItsOutline) {
   const Crossings found = crossings(unit_cube + body("b", "[0.5, 0.2, 0.3]", "[1.5, 0.8, 0.9]"));
   ASSERT_EQ(found.pairs.size(), 1U);
@@ -40,8 +40,8 @@ TEST(Crossings, OfABoxInACubeAreItsOutline) {
   EXPECT_TRUE(found.complete);
 }
 
-// Unit spheres at the distance d meet in a circle of the radius sqrt(1 - d^2 / 4); 256 segments
-// leave 1e-4 of the radius out.
+// Unit spheres at the distance d intersect in a circle of the radius sqrt(1 - d^2 / 4); 256
+// segments omit 1e-4 of the radius.
 TEST(Crossings, OfTwoSpheresAreACircle) {
   const Crossings found = crossings(ball("a", "[0, 0, 0]") + ball("b", "[0.5, 0.1, 0.2]"));
   ASSERT_EQ(found.pairs.size(), 1U);
@@ -49,7 +49,7 @@ TEST(Crossings, OfTwoSpheresAreACircle) {
   EXPECT_NEAR(found.pairs[0].line_m, 2.0 * base::pi * std::sqrt(1.0 - d2 / 4.0), 2e-3);
 }
 
-// A plate of 3 m right through the unit_cube: the unit_cube's outline.
+// A plate of 3 m through unit_cube: the cube's outline.
 TEST(Crossings, OfAPlateThroughACubeAreTheCubesOutline) {
   const Crossings found =
       crossings(unit_cube +
@@ -72,11 +72,11 @@ TEST(Crossings, ToTouchToStandOnAndToBeInsideIsNoCrossing) {
         body("b", "[3, 0, 0]", "[4, 1, 1]")}) {
     EXPECT_TRUE(crossings(unit_cube + other).pairs.empty()) << other;
   }
-  // Nor is what one object does with itself.
+  // Self-intersections do not count.
   EXPECT_TRUE(crossings(unit_cube).pairs.empty());
 }
 
-// The same wherever the scene stands and however large it is.
+// Independent of the scene's position and scale.
 TEST(Crossings, DoNotDependOnPlaceAndScale) {
   for (const double scale : {0.01, 1.0, 30.0}) {
     const std::string placed = fmt::format("scale = {}\ntranslate = [1000, 0, 0]\n", scale);

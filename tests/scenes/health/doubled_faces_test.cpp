@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faces that stand at the same place more than once.
+// Duplicate faces at one place.
 #include <fmt/format.h>
 
 #include "scenes/health/mend.h"
@@ -21,7 +21,7 @@ using test::volume;
 using test::warnings;
 
 TEST(DoubledFaces, FacesThatStandTwiceAreKeptOnce) {
-  // The same corners from another one on; as quadrilateral and as the same once more.
+  // The same corners from another starting corner; as a quadrilateral, and the same again.
   const std::string quad = std::string(corners) + face(cube[0]);
   for (const int start : {0, 1, 2, 3}) {
     const Scene scene = read(quad + face(cube[0], false, start));
@@ -56,8 +56,7 @@ TEST(DoubledFaces, FacesOfOtherMaterialsOnEachOtherAreNamedAndLeft) {
       << warnings(scene);
 }
 
-// Two cubes side by side have a face each at x = 1, against each other: 2 of volume, nothing to
-// say.
+// Two adjacent cubes have opposite faces at x = 1: total volume 2, no warning.
 TEST(DoubledFaces, BodiesMayTouch) {
   for (const char* material : {"white", "red"}) {
     const std::string beside = fmt::format(
@@ -71,7 +70,7 @@ TEST(DoubledFaces, BodiesMayTouch) {
   }
 }
 
-// A body each of whose faces stands there with both windings has no inside: six sheets.
+// A body whose faces all exist with both windings has no inside: six sheets.
 TEST(DoubledFaces, ABodyWithBothWindingsIsOfSheets) {
   std::string obj = cube_obj(none);
   for (const auto& f : cube) obj += face(f, true, 1);
@@ -83,7 +82,7 @@ TEST(DoubledFaces, ABodyWithBothWindingsIsOfSheets) {
   EXPECT_TRUE(holds(warnings(scene), {"6 faces stood back to back"})) << warnings(scene);
 }
 
-// Two sides of a panel may be two objects; each is seen from its front, and that is said.
+// Two sides of a panel may be two objects; each is visible from its front, with a warning.
 TEST(DoubledFaces, BackToBackObjectsStayTwo) {
   const std::string quad = std::string(corners) + face(cube[0]);
   const std::string back = std::string(corners) + face(cube[0], true);
@@ -96,7 +95,7 @@ TEST(DoubledFaces, BackToBackObjectsStayTwo) {
   EXPECT_EQ(warnings(read(quad, scene_of("orient = \"as-is\"\n" + meant), back)), "");
 }
 
-// The neighbour's face at x = 1 looks like its own as long as it is inside out.
+// The neighbour's face at x = 1 duplicates its own while the body is inside out.
 TEST(DoubledFaces, ABodyInsideOutThatTouchesAnotherIsTurned) {
   const std::string beside =
       "[[object]]\nname = \"beside\"\nmesh = \"b.obj\"\ntranslate = [1, 0, 0]\nmaterial = "
@@ -107,7 +106,8 @@ TEST(DoubledFaces, ABodyInsideOutThatTouchesAnotherIsTurned) {
   EXPECT_EQ(scene.warnings.size(), 1U) << warnings(scene);
 }
 
-// A front and a back on other diagonals have no volume but rounding: neither way is inside out.
+// A front and a back with different diagonals enclose no volume except rounding: neither is inside
+// out.
 TEST(DoubledFaces, ASheetOfTwoColoursKeepsItsSides) {
   const std::string sheet = std::string(corners) + "f 1 3 4 2\nf 1 2 3\nf 3 2 4\n";
   for (const char* turn : {"[10, 20, 30]", "[71, 12, 55]", "[33, 0, 7]"}) {
@@ -127,7 +127,8 @@ TEST(DoubledFaces, AnObjectThatStandsTwiceIsRefused) {
   EXPECT_TRUE(holds(folder.refusal(scene_of(again)), {"\"again\"", "same place", "Remove"}));
 }
 
-// Four corners in another order enclose another area: a bow tie's halves are no quadrilateral.
+// Four corners in another order enclose another area: the halves of a bow tie are not the
+// quadrilateral.
 TEST(DoubledFaces, TheSameCornersAreNotYetTheSameFace) {
   const std::string fan = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 1 0.5 0\n";
   const Scene scene = read(fan + "f 1 2 3 4 5\nf 1 5 2 3 4\n");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a file's vertex normals agree with one side, that side is the front.
+// If a file's vertex normals agree on one side, this side is the front.
 #include "scenes/health/file_fronts.h"
 
 #include <fmt/format.h>
@@ -17,8 +17,8 @@ using test::holds;
 enum class Winding { In, Out, Mixed };
 enum class Normals { In, Out, Apart, Faulty, None };
 
-// Half a pipe along x, open upward: radius 2 m, 12 faces. Apart: those of neighbouring corners are
-// on different sides.
+// Half a pipe along x, open upward: radius 2 m, 12 faces. Apart: normals of neighbouring corners
+// point to different sides.
 std::string trough(Winding winding, Normals normals, bool ply) {
   std::string points, vn, faces;
   constexpr int count = 12;
@@ -62,7 +62,7 @@ std::string trough(Winding winding, Normals normals, bool ply) {
 struct TroughScene {
   Scene scene;
   std::string warnings;
-  int inward = 0, outward = 0;  // triangles whose front looks to the axis, and away from it
+  int inward = 0, outward = 0;  // triangles with their front toward the axis, and away from it
 };
 
 TroughScene read_trough(const std::string& mesh, const std::string& name,
@@ -100,17 +100,17 @@ TEST(FileFronts, NormalsSayWhichSideIsTheFront) {
   }
 }
 
-// Normals that are not there, are no numbers or are on both sides say nothing.
+// Missing, invalid or contradictory normals have no effect.
 TEST(FileFronts, NormalsThatSayNothingChangeNothing) {
   for (const bool ply : {false, true}) {
     const std::string name = ply ? "m.ply" : "m.obj";
     for (const Normals normals : {Normals::Apart, Normals::Faulty, Normals::None}) {
-      if (ply && normals == Normals::Faulty) continue;  // nan is a number of PLY files
+      if (ply && normals == Normals::Faulty) continue;  // nan is a valid number in PLY files
       EXPECT_EQ(read_trough(trough(Winding::Out, normals, ply), name).outward, 24);
       EXPECT_EQ(read_trough(trough(Winding::In, normals, ply), name).inward, 24);
       const TroughScene mixed = read_trough(trough(Winding::Mixed, normals, ply), name);
       EXPECT_TRUE(mixed.inward == 8 && mixed.outward == 16) << mixed.inward;
-      // What cameras see is to be the front.
+      // The front should face the cameras.
       EXPECT_TRUE(holds(mixed.warnings, {"wound against each other", "orient = \"inward\""}))
           << mixed.warnings;
     }
@@ -126,13 +126,13 @@ TEST(FileFronts, ASceneThatSaysWhichSideIsObeyed) {
       read_trough(trough(Winding::Mixed, Normals::None, false), "m.obj", "orient = \"inward\"\n")
           .inward,
       24);
-  // inward = true turns all over, whatever the normals say.
+  // inward = true reverses all faces, independent of normals.
   EXPECT_EQ(
       read_trough(trough(Winding::Out, Normals::Out, false), "m.obj", "inward = true\n").inward,
       24);
 }
 
-// Rounded, each face has 24 triangles or more on the same side.
+// After rounding each face has 24 triangles or more, all on the same side.
 TEST(FileFronts, RoundedMeshesKeepTheirSide) {
   for (const Winding winding : {Winding::In, Winding::Out, Winding::Mixed}) {
     const TroughScene in =

@@ -13,7 +13,7 @@ Scene with_lamp_at(const std::string& height, const std::string& kind = "point",
   const std::string place = " = [0.3, 0.4, " + height + "]\n";
   std::string size = "position" + place;
   if (kind == "disk") size = "center" + place + "normal = " + normal + "\nradius = 0.1\n";
-  if (kind == "rectangle") {  // shines up along edge_u x edge_v, or down
+  if (kind == "rectangle") {  // emits up along edge_u x edge_v, or down
     const std::string edge_v = normal == "[0, 0, 1]" ? "[0, 0.1, 0]" : "[0, -0.1, 0]";
     size = "center" + place + "edge_u = [0.1, 0, 0]\nedge_v = " + edge_v + "\n";
   }
@@ -26,7 +26,7 @@ Scene with_lamp_at(const std::string& height, const std::string& kind = "point",
       "[3, 4, 0], [-3, 4, 0]]\nmaterial = \"m\"\n");
 }
 
-// Of faces of 2 m and more 0.16 mm is the least distance, whatever else there is.
+// For faces of 2 m and more the minimum distance is 0.16 mm, independent of other objects.
 TEST(LiftLamps, MovesWhatIsTooNearOnItsOwnSide) {
   const Scene above = with_lamp_at("1e-6"), below = with_lamp_at("-1e-6"), on = with_lamp_at("0");
   EXPECT_NEAR(above.lamps[0].position.z, 1.6e-4, 1e-10);
@@ -39,7 +39,7 @@ TEST(LiftLamps, MovesWhatIsTooNearOnItsOwnSide) {
   EXPECT_TRUE(test::holds(on.warnings[0], {"is on the object", "in front of it"}));
 }
 
-// Where three walls of a box meet, all three are left by as much.
+// At a corner of three walls, the distance to all three is the same.
 TEST(LiftLamps, LeavesEveryWallOfACorner) {
   const test::SceneFolder folder;
   const Scene scene = folder.read(
@@ -64,8 +64,8 @@ TEST(LiftLamps, NamesWhatStandsBetweenSheets) {
   EXPECT_TRUE(test::holds(scene.warnings.back(), {"\"lamp\"", "between", "move it"}));
 }
 
-// Flush with the floor a flat lamp may shine up: nothing is said, but rays meet it first, and not
-// the floor, where it is. One that shines down is lifted with a warning.
+// A flat lamp flush with the floor may emit upward: no warning, but rays hit the lamp before the
+// floor. A lamp that emits downward is lifted with a warning.
 TEST(LiftLamps, FlatLampsStandInFrontOfWhatTheyAreFlushWith) {
   for (const std::string kind : {"disk", "rectangle"}) {
     for (const std::string height : {"0", "1e-5"}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faults of meshes, put in by hand: what is mended, what is named, what is left alone.
+// Deliberate mesh faults: which are repaired, which are named, which are left.
 #include "scenes/health/mend.h"
 
 #include <array>
@@ -39,8 +39,8 @@ TEST(Mend, ABodyInsideOutIsTurnedOutwardAndSaysSo) {
   const Scene scene = read(cube_obj(all));
   EXPECT_NEAR(volume(scene), 1.0, 1e-15);
   EXPECT_TRUE(holds(warnings(scene), {"\"body\"", "inside out", "as-is"})) << warnings(scene);
-  // Parallelograms stay (0,1,2), (0,2,3) of their corners: the diagonal is the first's last edge
-  // and the second's first.
+  // Parallelograms stay (0,1,2), (0,2,3) of their corners: the diagonal is the first triangle's
+  // last edge and the second's first.
   for (std::size_t t = 0; t < scene.triangles.size(); t += 2) {
     EXPECT_EQ(scene.triangles[t].vertex[0], scene.triangles[t + 1].vertex[0]);
     EXPECT_EQ(scene.triangles[t].vertex[2], scene.triangles[t + 1].vertex[1]);
@@ -59,7 +59,7 @@ TEST(Mend, FacesWoundAgainstTheirNeighboursAreTurned) {
 }
 
 TEST(Mend, ARoomStaysARoom) {
-  // A camera, a lamp or another object inside: the inside is what is looked at.
+  // With a camera, a lamp or another object inside, the faces are oriented inward.
   EXPECT_NEAR(volume(read(cube_obj(all), scene_of("", "[0.2, 0.3, 0.6]"))), -1.0, 1e-15);
   const std::string lamp =
       "[[light]]\nname = \"l\"\ntype = \"point\"\nposition = [0.5, 0.5, 0.5]\nflux = 1\n";
@@ -74,7 +74,7 @@ TEST(Mend, ARoomStaysARoom) {
 }
 
 TEST(Mend, ACavityStaysACavity) {
-  // A cube with a cube of half the edge inside it, whose faces look into the hole: 1 - 1/8.
+  // A cube with a hollow cube of half the edge inside it, faces toward the cavity: 1 - 1/8.
   std::string obj = cube_obj(none) +
                     "v 0.25 0.25 0.25\nv 0.75 0.25 0.25\nv 0.25 0.75 0.25\nv 0.75 "
                     "0.75 0.25\nv 0.25 0.25 0.75\nv 0.75 0.25 0.75\nv 0.25 0.75 "
@@ -91,7 +91,7 @@ TEST(Mend, ACavityStaysACavity) {
 TEST(Mend, OrientDecidesWhereTheFileDoesNot) {
   EXPECT_NEAR(volume(read(cube_obj(all), scene_of("orient = \"as-is\"\n"))), -1.0, 1e-15);
   EXPECT_NEAR(volume(read(cube_obj(all), scene_of("inward = true\n"))), 1.0, 1e-15);
-  // Told to be outward, also a room.
+  // Explicitly outward, even for a room.
   EXPECT_NEAR(volume(read(cube_obj(all), scene_of("orient = \"outward\"\n", "[0.2, 0.3, 0.6]"))),
               1.0, 1e-15);
   const Scene sheets = read(cube_obj(all), scene_of("orient = \"two-sided\"\n"));
@@ -99,19 +99,19 @@ TEST(Mend, OrientDecidesWhereTheFileDoesNot) {
   for (const Triangle& triangle : sheets.triangles) {
     EXPECT_TRUE(sheets.materials[triangle.material].two_sided);
   }
-  // An open box with one face wound against the others: named, and turned when told to.
+  // An open box with one reversed face: named, and reoriented on request.
   const std::array<bool, 6> one = {true};
   const Scene open = read(cube_obj(one, 5));
   EXPECT_TRUE(
       holds(warnings(open), {"wound against each other", "orient = \"inward\"", "two-sided"}))
-      << warnings(open);  // the camera looks into it through the opening, x = 1
+      << warnings(open);  // the camera sees its inside through the opening, x = 1
   const std::string behind = warnings(read(cube_obj(one, 5), scene_of("", "[-5, 0.5, 0.5]")));
   EXPECT_TRUE(holds(behind, {"wound against each other", "orient = \"outward\""})) << behind;
   EXPECT_GT(open.objects.front().surface.mixed_edges, 0U);
   const Scene told = read(cube_obj(one, 5), scene_of("orient = \"outward\"\n"));
   EXPECT_EQ(told.objects.front().surface.mixed_edges, 0U);
-  // Five outward faces about the middle have 5 of the cube's 6 pyramids; the sixth is the
-  // opening's, x = 1, whose a (b x c) / 6 about the corner at 0 is a third: 1 - 1/3.
+  // Five outward faces give 5 of the cube's 6 pyramids about the middle; the sixth is the
+  // opening's, x = 1. About the corner at 0 its a (b x c) / 6 is a third: 1 - 1/3.
   EXPECT_NEAR(volume(told), 1.0 - 1.0 / 3.0, 1e-15);
   const test::SceneFolder folder;
   folder.put("a.obj", cube_obj(none));
@@ -130,14 +130,14 @@ TEST(Mend, ARoomWithAWindowOrALampOnItsCeilingIsARoom) {
   const std::string lamp =
       "[[light]]\nname = \"l\"\ntype = \"point\"\nposition = [0.5, 0.5, 1]\nflux = 1\n";
   EXPECT_NEAR(volume(read(cube_obj(all), scene_of(lamp))), -1.0, 1e-15);
-  // A box that stands on the floor, with its underside on it.
+  // A box standing on the floor, its underside on it.
   const std::string box =
       "[[object]]\nname = \"box\"\nshape = \"box\"\nmin = [0.3, 0.3, 0]\n"
       "max = [0.6, 0.6, 0.4]\nmaterial = \"white\"\n";
   EXPECT_EQ(warnings(read(cube_obj(all), scene_of(box))), "");
 }
 
-// With a camera inside all faces come to look at it, whichever way most of them were.
+// With a camera inside, all faces are oriented toward it, whatever the majority was.
 TEST(Mend, AMixedRoomIsTurnedToItsCamera) {
   for (const std::array<bool, 6>& turned :
        {std::array<bool, 6>{true, true}, {true, true, true, true, false, false}}) {
@@ -145,7 +145,7 @@ TEST(Mend, AMixedRoomIsTurnedToItsCamera) {
   }
 }
 
-// A strip of three quadrilaterals closed with half a turn.
+// A strip of three quadrilaterals closed with a half twist.
 TEST(Mend, ASurfaceWithoutTwoSidesIsNamed) {
   const std::string strip =
       "v 0 0 0\nv 0 0 1\nv 2 0 0\nv 2 0 1\nv 1 2 0\nv 1 2 1\nf 1 3 4 2\nf 3 5 6\nf 3 6 4\nf 5 2 "
@@ -155,7 +155,7 @@ TEST(Mend, ASurfaceWithoutTwoSidesIsNamed) {
       << warnings(read(strip));
 }
 
-// Small ones: tests/scenes/plausible.
+// Small scenes: tests/scenes/plausible.
 TEST(Mend, AForgottenUnitIsSuspected) {
   EXPECT_TRUE(
       holds(warnings(read(cube_obj(none), scene_of("scale = 1000\n"))), {"unit", "m across"}));
@@ -167,12 +167,12 @@ TEST(SolidAngleOf, IsAllInsideAndNothingOutside) {
   EXPECT_NEAR(solid_angle_of(scene, part, {0.01, 0.5, 0.99}), 4.0 * base::pi, 1e-12);
   EXPECT_NEAR(solid_angle_of(scene, part, {-0.01, 0.5, 0.5}), 0.0, 1e-12);
   EXPECT_NEAR(solid_angle_of(scene, part, {5.0, 0.5, 0.5}), 0.0, 1e-12);
-  // On a face half of it, on an edge a quarter.
+  // On a face half of the sphere, on an edge a quarter.
   EXPECT_NEAR(solid_angle_of(scene, part, {1.0, 0.5, 0.5}), 2.0 * base::pi, 1e-9);
 }
 
-// Of each vertex the first at its place: zeros of both signs are one place, neighbouring numbers
-// are two, and a thousand places keep apart.
+// For each vertex the first one at its position: zeros of both signs are equal, adjacent
+// floating-point numbers differ, and a thousand positions stay distinct.
 TEST(Topology, WeldedVerticesAreTheFirstAtTheirPlace) {
   std::vector<Vec3> vertices{{0.0, 1.0, 2.0}, {-0.0, 1.0, 2.0}, {std::nextafter(0.0, 1.0), 1, 2}};
   for (int k = 0; k < 1000; ++k) vertices.emplace_back(k % 10, k / 10 % 10, k / 100 + 3.0);

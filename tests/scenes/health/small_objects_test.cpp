@@ -26,8 +26,9 @@ Scene with(const std::vector<Plate>& plates) {
   return test::SceneFolder().read(text);
 }
 
-// Rays start 2 * 2^-24 * 2 * 1e6 m = 0.24 m off a plate across z 1000 km away along z (the terms of
-// its 0.7 m are below 1 um), and 20 of that are 4.8 m: a plate of 0.7 m is lost, one of 7 m not.
+// For a plate across z, 1000 km away along z, the ray offset is 2 * 2^-24 * 2 * 1e6 m = 0.24 m (the
+// terms of its 0.7 m are below 1 um); 20 offsets are 4.8 m: a plate of 0.7 m is too small, one of 7
+// m is not.
 TEST(SmallObjects, AreNamedWhereSinglePrecisionLosesThem) {
   const Plate bay{"bay", 1.0, 0.0, 0.0}, box{"box", 1.0, 0.0, 1.0};
   const Scene small = with({bay, box, {"plate", 0.7, 0.0, 1e6}});
@@ -40,7 +41,7 @@ TEST(SmallObjects, AreNamedWhereSinglePrecisionLosesThem) {
   }
 }
 
-// Whatever else there is: a plate of 0.7 m on a floor of 10 km, or beside one of 3 m at 100 km.
+// Independent of other objects: a plate of 0.7 m on a floor of 10 km, or with one of 3 m at 100 km.
 TEST(SmallObjects, DoNotDependOnTheRestOfTheScene) {
   for (const Plate& other : {Plate{"floor", 1e4, 0.0, 0.0}, Plate{"east", 3.0, 1e5, 0.0}}) {
     for (const std::string& warning :

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lamps and emitting surfaces of finite extent: what their samples give a plate on average, against
-// the closed forms of a differential element and a figure (Howell's catalogue B-3, B-4, B-13).
+// Lamps and emitting surfaces of finite extent: mean of their samples on a plate against closed
+// forms of a differential element and a figure (Howell's catalogue B-3, B-4, B-13).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ struct Estimate {
   double mean = 0.0, std_error = 0.0, relative_variance = 0.0;
 };
 
-// Mean illuminance of a plate over independent samples.
+// Mean illuminance of a plate from independent samples.
 Estimate illuminance(const Sample& sample, const Vec3& point, const Vec3& normal,
                      int count = 40000) {
   base::Rng rng(base::Key(1, base::Stream::Test, 90));
@@ -50,8 +50,8 @@ double under_a_corner(double a, double b, double c) {
   return (x / p * std::atan(y / p) + y / q * std::atan(x / q)) / (2 * pi);
 }
 
-// Plate at the corner of a rectangle that stands upright on its plane a distance away: width b
-// along the plane, height a, distance c.
+// Plate at a corner of a rectangle perpendicular to its plane at the distance c: width b along the
+// plane, height a.
 double beside_a_corner(double b, double a, double c) {
   const double y = c / b, x = a / b, r = std::sqrt(x * x + y * y);
   return (std::atan(1 / y) - y / r * std::atan(1 / r)) / (2 * pi);
@@ -62,7 +62,7 @@ Lamp rectangle(double a, double b, double height) {
   lamp.kind = LampKind::Rectangle;
   lamp.edge_u = Vec3(0, b, 0);
   lamp.edge_v = Vec3(a, 0, 0);
-  lamp.position = Vec3(a / 2, b / 2, height);  // a corner over the origin
+  lamp.position = Vec3(a / 2, b / 2, height);  // a corner above the origin
   lamp.axis = Vec3(0, 0, -1);
   lamp.exitance = Rgb(1000.0);
   return lamp;
@@ -86,7 +86,7 @@ TEST(AreaLight, RectangleOverAPlateGivesItTheClosedForm) {
 }
 
 TEST(AreaLight, RectangleBesideAPlateGivesItTheClosedForm) {
-  // It stands at x = c and shines toward the plate at the origin; half of it is below the horizon.
+  // It is at x = c and emits toward the plate at the origin; half of it is below the horizon.
   for (const double c : {0.1, 1.0, 5.0}) {
     Lamp lamp;
     lamp.kind = LampKind::Rectangle;
@@ -104,8 +104,8 @@ TEST(AreaLight, RectangleBesideAPlateGivesItTheClosedForm) {
 }
 
 TEST(AreaLight, ParallelogramsAreNotTakenForRectangles) {
-  // A slanted lamp is the rectangle of its base and height, sheared: the same light as its two
-  // triangles as emitting surfaces.
+  // A sheared lamp has the area of the rectangle with its base and height: the same light as its
+  // two triangles as emitting surfaces.
   Lamp lamp = rectangle(1.0, 1.0, 0.5);
   lamp.edge_v += Vec3(0, 0.8, 0);
   tests::SceneBuilder builder;
@@ -122,7 +122,7 @@ TEST(AreaLight, ParallelogramsAreNotTakenForRectangles) {
 }
 
 TEST(AreaLight, SolidAngleLeavesLittleNoiseNearALamp) {
-  // Light by solid angle varies only with the receiver's cosine; by area with cos / r^2 too.
+  // Solid-angle samples vary only with the receiver's cosine; area samples also with cos / r^2.
   const auto variance = [](double height, Spread spread) {
     return illuminance(samples_of(rectangle(1.0, 1.0, height), spread), Vec3(0.5, 0.5, 0.0),
                        Vec3(0, 0, 1))
@@ -184,8 +184,8 @@ TEST(AreaLight, EmittingSurfacesGiveTheSameAsTheLampOfTheirShape) {
 }
 
 TEST(AreaLight, LongEmitterIsSampledWhereItIsNear) {
-  // A strip of 200 pieces, 20 m long, 10 cm over the plate: chosen by flux almost every sample goes
-  // to a piece that gives nothing.
+  // A strip of 200 elements, 20 m long, 10 cm over the plate: selection by flux would nearly always
+  // choose an element that gives no light.
   tests::SceneBuilder builder;
   const std::uint32_t bright = builder.material(tests::grey(0.0, 1000.0));
   for (int k = 0; k < 200; ++k) {
@@ -206,8 +206,8 @@ TEST(AreaLight, LongEmitterIsSampledWhereItIsNear) {
 }
 
 TEST(AreaLight, SolidAnglesAreThoseOfTheCubesFaces) {
-  // Seen from its middle every face of a cube fills 4 pi / 6, half a face 4 pi / 12; directions are
-  // uniform over it: by symmetry their mean stands on the face's axis.
+  // From its middle every face of a cube fills 4 pi / 6, half a face 4 pi / 12. Directions are
+  // uniform in it: by symmetry their mean lies on the face's axis.
   const Vec3 corner(-1, -1, -1);
   Vec3 mean(0.0), triangle_mean(0.0);
   base::Rng rng(base::Key(1, base::Stream::Test, 91));
@@ -226,7 +226,7 @@ TEST(AreaLight, SolidAnglesAreThoseOfTheCubesFaces) {
     triangle_mean += (half.direction + Vec3(half.direction.y, half.direction.x, half.direction.z)) /
                      (2.0 * count);
   }
-  // The mean cosine over a face from the illuminance of its middle's plate: E / (L Omega).
+  // Mean cosine over a face from the illuminance of a plate in the middle: E / (L Omega).
   const double cosine = 4.0 * pi * under_a_corner(1.0, 1.0, 1.0) / (4.0 * pi / 6.0);
   for (const Vec3& m : {mean, triangle_mean}) {
     EXPECT_NEAR(m.x, 0.0, 4.0 / std::sqrt(double(count)));
@@ -236,8 +236,8 @@ TEST(AreaLight, SolidAnglesAreThoseOfTheCubesFaces) {
 }
 
 TEST(AreaLight, SpotFallsSmoothlyFromBeamToField) {
-  // From 1 to 0 without a step, and level at both ends: in steps of 0.01 deg of 30 deg none is
-  // larger than 1.5 (the steepest slope of a smoothstep) x 0.01 deg in the cosine.
+  // Continuous from 1 to 0 and level at both ends: in steps of 0.01 deg of 30 deg no step exceeds
+  // 1.5 (the steepest slope of a smoothstep) x 0.01 deg in the cosine.
   Lamp lamp;
   lamp.kind = LampKind::Spot;
   lamp.beam_deg = 40.0;

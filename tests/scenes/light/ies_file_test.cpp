@@ -19,7 +19,7 @@ using tests::steps;
 
 double cosine(double deg) { return std::cos(deg * pi / 180.0); }
 
-// Uneven in both angles, and dark along one of its planes near the axis.
+// Varies in both angles, and dark in one plane near the axis.
 double lopsided(double theta_deg, double phi_deg) {
   return 100.0 * (1.0 + cosine(theta_deg)) * (1.2 + cosine(phi_deg - 40.0)) + phi_deg / 10.0;
 }
@@ -50,8 +50,8 @@ TEST(IesFile, EvenIntensityHasTheFluxOfItsSolidAngle) {
 }
 
 TEST(IesFile, FluxIsTheIntegralOfWhatIsInterpolated) {
-  // Midpoint rule over the interpolated table, 900 x 720 points: error below 1e-5 where the table's
-  // steps are whole numbers of the rule's.
+  // Midpoint rule over the interpolated table, 900 x 720 points: error below 1e-5 if the table's
+  // steps are multiples of the rule's.
   IesText file;
   file.vertical = {0.0, 10.0, 35.0, 90.0, 120.0, 180.0};
   file.horizontal = {0.0, 45.0, 100.0, 180.0, 300.0, 360.0};
@@ -147,7 +147,7 @@ TEST(IesFile, CommasAndOddLineBreaksSeparateToo) {
   EXPECT_NEAR(parse_ies(text, "a").light->peak_cd(), 100.0, 1e-12);
 }
 
-// 100 cd over a hemisphere are 628.32 lm, whatever marks the end of the file.
+// 100 cd over a hemisphere are 628.32 lm, with any end-of-file mark.
 TEST(IesFile, MarksOfAFilesEndAreNoNumbers) {
   const std::string good = IesText().text();
   const std::string whole = good.substr(0, good.find_last_not_of(" \n") + 1);
@@ -250,7 +250,7 @@ TEST(IesFile, WhatIsNoFileOnDiskIsRefusedAtOnce) {
 }
 
 TEST(IesFile, MutatedFilesAreReadOrRefused) {
-  // Bytes changed, cut out and doubled at random: whatever comes, the table is sound or refused.
+  // Random changes, deletions and duplications of bytes: the table is valid or rejected.
   IesText file;
   file.tilt = "TILT=INCLUDE\n1\n3\n0 45 90\n1.0 0.9 0.8\n";
   file.horizontal = {0.0, 45.0, 90.0};
@@ -293,11 +293,11 @@ TEST(IesFile, MutatedFilesAreReadOrRefused) {
 }
 
 TEST(Photometry, SampledDirectionsHaveTheTablesMoments) {
-  // Means of cos theta, sin theta cos phi and sin theta sin phi against the midpoint integrals of
-  // the interpolated table. Independent draws; each lies in [-1, 1], so that the standard error of
-  // a mean of N is below 1 / sqrt(N).
+  // Means of cos theta, sin theta cos phi and sin theta sin phi against midpoint integrals of the
+  // interpolated table. Independent samples in [-1, 1]: the standard error of a mean of N is below
+  // 1 / sqrt(N).
   IesText file;
-  file.vertical = {0.0, 80.0, 120.0, 180.0};  // wide bands: how theta lies within one counts
+  file.vertical = {0.0, 80.0, 120.0, 180.0};  // wide bands: theta within a band matters
   file.horizontal = {0.0, 45.0, 100.0, 180.0, 300.0, 360.0};
   file.candela = [](double theta, double phi) {
     return theta == 80.0 && phi > 90.0 ? 0.0 : lopsided(theta, phi);

@@ -49,8 +49,9 @@ TEST(IesLamp, GivesTheFilesCandelasByInverseSquare) {
 }
 
 TEST(IesLamp, PlanesLieAsSeenFromAbove) {
-  // Type C: horizontal angles grow counter-clockwise for one who looks along the axis from behind
-  // the lamp; C0 toward `up`. Aimed along -z with up = +y: C90 is +y turned by 90 deg about +z, -x.
+  // Type C: horizontal angles increase counter-clockwise for a viewer behind the lamp who looks
+  // along the axis; C0 is toward `up`. Aimed along -z with up = +y: C90 is +y rotated by 90 deg
+  // about +z, -x.
   IesText file;
   file.horizontal = steps(0.0, 360.0, 90.0);
   file.candela = [](double, double phi) { return 100.0 + phi; };
@@ -64,7 +65,7 @@ TEST(IesLamp, PlanesLieAsSeenFromAbove) {
   EXPECT_NEAR(toward({-1, 0, 0}), 190.0, 1e-6);
   EXPECT_NEAR(toward({0, -1, 0}), 280.0, 1e-6);
   EXPECT_NEAR(toward({1, 0, 0}), 370.0, 1e-6);
-  EXPECT_EQ(read(file.text()).c0, Vec3(1, 0, 0));  // unless the scene says otherwise
+  EXPECT_EQ(read(file.text()).c0, Vec3(1, 0, 0));  // default of the scene
 }
 
 TEST(IesLamp, FluxRescalesAndColorTints) {
@@ -74,7 +75,7 @@ TEST(IesLamp, FluxRescalesAndColorTints) {
   EXPECT_NEAR(flux.r, 500.0, 1e-9);
   EXPECT_NEAR(flux.g, 250.0, 1e-9);
   EXPECT_EQ(flux.b, 0.0);
-  // The luminous flux stays the file's whatever the hue.
+  // The luminous flux does not depend on the hue.
   const Rgb tinted = lamp_flux_lm(read(file.text(), "color = [4, 2, 1]\n"));
   EXPECT_NEAR(base::luminance(tinted), 200.0 * base::pi, 1e-9);
   EXPECT_NEAR(tinted.r / tinted.b, 4.0, 1e-12);
@@ -101,8 +102,8 @@ TEST(IesLamp, WhatDoesNotFitIsRefused) {
 }
 
 TEST(IesLamp, CosineDistributionIsALambertDiskFromAfar) {
-  // A disk of area A and exitance M has I = (M A / pi) cos theta where its radius is small against
-  // the distance: 1 cm at 10 m leave an error of 1e-6. The table's steps of 1 deg leave
+  // A disk of area A and exitance M has I = (M A / pi) cos theta if its radius is small against the
+  // distance: 1 cm at 10 m has an error of 1e-6. The table's steps of 1 deg have an error of
   // (pi/180)^2 / 8 = 4e-5 of the peak.
   IesText file;
   file.vertical = steps(0.0, 90.0, 1.0);
@@ -125,8 +126,8 @@ TEST(IesLamp, CosineDistributionIsALambertDiskFromAfar) {
 }
 
 TEST(IesLamp, EmittedRaysFollowTheIntensity) {
-  // Mean direction of the rays against that of the intensity, Lambert about the axis: 2/3 along it,
-  // nothing across. Independent rays of unit length: standard error below 1 / sqrt(N).
+  // Mean direction of the rays against the mean of the intensity, Lambertian about the axis: 2/3
+  // along it, 0 across. Independent rays of unit length: standard error below 1 / sqrt(N).
   IesText file;
   file.vertical = steps(0.0, 90.0, 1.0);
   file.candela = [](double theta, double) { return 50.0 * cosine_of(theta); };

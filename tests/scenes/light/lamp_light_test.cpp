@@ -54,7 +54,7 @@ TEST(Lamp, PointLampsFluxIsFourPiTimesItsIntensity) {
 }
 
 TEST(Lamp, DiskGivesItsAxisTheClosedForm) {
-  // On the axis at height h of a Lambert disc: E = M r^2 / (r^2 + h^2); mean over stratified
+  // On the axis at height h of a Lambertian disc: E = M r^2 / (r^2 + h^2); mean over stratified
   // samples, whose error is below 1e-4 at 256 x 4 points of a smooth integrand.
   Lamp lamp;
   lamp.kind = LampKind::Disk;
@@ -73,9 +73,9 @@ TEST(Lamp, DiskGivesItsAxisTheClosedForm) {
 }
 
 TEST(Lamp, DiskOverAFloorGivesItTheClosedFormHoweverNear) {
-  // E = M r^2 / (r^2 + h^2) again, by 64 x 64 points. Points even over the disk find nothing at
-  // h = 1e-3 r: one in a million of them is as near as h. Those even over the solid angle of the
-  // square around it are off by the strips along the rim, 4 in 64 of few cells: 1 % is asked.
+  // E = M r^2 / (r^2 + h^2) again, with 64 x 64 points. Points uniform over the disk fail at h =
+  // 1e-3 r: one in a million of them is as near as h. Points uniform in the solid angle of the
+  // enclosing square miss by the strips along the rim, 4 in 64 of few cells: tolerance 1 %.
   Lamp lamp;
   lamp.kind = LampKind::Disk;
   lamp.axis = glm::normalize(Vec3(0.3, -0.5, 0.8));

@@ -20,7 +20,7 @@ Vec3 random_point(base::Rng& rng, double size) {
 
 Vec3 random_direction(base::Rng& rng) { return glm::normalize(random_point(rng, 1.0) + 1e-3); }
 
-// Lamps of every kind, strewn through a cube of 20 m.
+// Lamps of every kind at random positions in a cube of 20 m.
 std::vector<Lamp> strewn_lamps(std::size_t count) {
   base::Rng rng(base::Key(1, base::Stream::Test, 70));
   tests::IesText downward, upward;
@@ -52,7 +52,7 @@ LightTree tree_of(const std::vector<Lamp>& lamps) {
   return LightTree(bounds);
 }
 
-// What a lamp gives a glossy plate, nothing in between.
+// Unoccluded light of a lamp on a glossy plate.
 double contribution(const Lamp& lamp, const Receiver& receiver, double u = 0.5, double v = 0.5) {
   const LightSample sample = sample_lamp(lamp, receiver.point, u, v);
   const double alpha = std::max(0.0, glm::dot(sample.direction, receiver.mirrored));
@@ -75,7 +75,7 @@ std::vector<Receiver> random_receivers(std::size_t count) {
 }
 
 TEST(LightTree, ExpectedLightIsThatOfAllLampsWhateverHidesSome) {
-  // A third of the lamps is hidden. Independent draws: four standard errors of their mean.
+  // A third of the lamps is occluded. Independent draws: four standard errors of their mean.
   const std::vector<Lamp> lamps = strewn_lamps(300);
   const LightTree tree = tree_of(lamps);
   base::Rng rng(base::Key(1, base::Stream::Test, 72));
@@ -99,7 +99,7 @@ TEST(LightTree, ExpectedLightIsThatOfAllLampsWhateverHidesSome) {
     }
     const double std_error = std::sqrt(std::max(0.0, square - mean * mean) / draws);
     EXPECT_NEAR(mean, exact, 4.0 * std_error + 1e-12 * exact);
-    EXPECT_LE(std_error * std::sqrt(double(draws)), exact);  // one choice is worth something
+    EXPECT_LE(std_error * std::sqrt(double(draws)), exact);  // a single choice is informative
   }
 }
 
@@ -115,8 +115,8 @@ TEST(LightTree, LightsThatMatterAreAlwaysChosenWhole) {
     chosen.clear();
     tree.choose(receiver, 0.3, share, chosen);
     for (std::size_t k = 0; k < lamps.size(); ++k) {
-      // The tree knows the total from its bounds, which are too wide by a factor of a few: of
-      // lights four times above the share none may be left to chance.
+      // The tree's total comes from its bounds, which are too large by a factor of a few: lights
+      // four times above the share must always be chosen.
       if (contribution(lamps[k], receiver) < 4.0 * share * all || all <= 0.0) continue;
       ++mattering;
       const auto found = std::find_if(chosen.begin(), chosen.end(),
@@ -129,7 +129,7 @@ TEST(LightTree, LightsThatMatterAreAlwaysChosenWhole) {
 }
 
 TEST(LightTree, NoLightThatReachesThePointIsLeftOut) {
-  // Every lamp as a tree of its own: chosen wherever any point of it gives light.
+  // Each lamp as its own tree: chosen if any point of it gives light.
   base::Rng rng(base::Key(1, base::Stream::Test, 73));
   std::vector<LightChoice> chosen;
   const std::vector<Receiver> receivers = random_receivers(200);
@@ -137,7 +137,7 @@ TEST(LightTree, NoLightThatReachesThePointIsLeftOut) {
   for (const Lamp& lamp : strewn_lamps(50)) {
     const LightTree tree = tree_of({lamp});
     for (Receiver receiver : receivers) {
-      receiver.point = lamp.position + 0.1 * receiver.point;  // near, where extent counts
+      receiver.point = lamp.position + 0.1 * receiver.point;  // near, where the extent matters
       chosen.clear();
       tree.choose(receiver, 0.5, 1.0 / 16.0, chosen);
       left_out += chosen.empty() ? 1 : 0;
@@ -181,7 +181,7 @@ TEST(LightTree, LampsInOnePlaceAndNoneAtAll) {
   EXPECT_NEAR(weight, 100.0, 1e-9);
   chosen.clear();
   receiver.point = lamp.position;
-  tree.choose(receiver, 0.0, 0.1, chosen);  // in their very midst: finite, whatever it is
+  tree.choose(receiver, 0.0, 0.1, chosen);  // amid the lights: finite, any value
   for (const LightChoice& choice : chosen) EXPECT_TRUE(std::isfinite(choice.weight));
 }
 

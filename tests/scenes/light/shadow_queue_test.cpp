@@ -16,7 +16,7 @@ struct Taken {
   std::vector<double> share;
 };
 
-// Rays upward from twenty points of a row; a roof of 1 m x 1 m lies over those with |x| < 0.5.
+// Upward rays from twenty points in a row; a roof of 1 m x 1 m covers those with |x| < 0.5.
 Taken trace(std::size_t most, std::uint64_t& rays) {
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 1.0, false);
@@ -49,7 +49,7 @@ TEST(ShadowQueue, EachRayGetsItsShareInTheOrderOfTheRays) {
   }
 }
 
-// Even numbers go to one light, odd ones to another.
+// Even rays go to one light, odd rays to another.
 TEST(ShadowQueue, ALongQueueTracesTheRaysOfOneLightTogether) {
   std::uint64_t rays = 0;
   const Taken taken = trace(64, rays);
@@ -61,7 +61,7 @@ TEST(ShadowQueue, ALongQueueTracesTheRaysOfOneLightTogether) {
   }
 }
 
-// Nothing can lie between a surface and a source that touches it.
+// Nothing fits between a surface and a source that touches it.
 TEST(ShadowQueue, ASourceWithinTheOffsetNeedsNoRay) {
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);

@@ -98,7 +98,7 @@ std::string stl_pyramid(bool ascii) {
 TEST(MeshFile, EveryFormatGivesTheSamePyramid) {
   const test::SceneFolder folder;
   folder.put("a.obj", obj_pyramid());
-  folder.put("b.ply", ply_pyramid("ascii") + "\n\x1a");  // as old programs end a text
+  folder.put("b.ply", ply_pyramid("ascii") + "\n\x1a");  // end of text in old programs
   folder.put("c.ply", ply_pyramid("binary_little_endian"));
   folder.put("d.ply", ply_pyramid("binary_big_endian"));
   folder.put("e.STL", stl_pyramid(true));
@@ -167,7 +167,7 @@ TEST(ObjFile, MaterialsComeFromTheSceneThenFromTheLibrary) {
   EXPECT_EQ(red.shininess, 30.0);
   EXPECT_EQ(red.emit, Rgb(3, 2, 1));
   EXPECT_EQ(red.light_group, "red paint");
-  // `material` of the object wins.
+  // The object's `material` has priority.
   for (const Triangle& t : folder.read(object("a.obj")).triangles) EXPECT_EQ(t.material, 0U);
 }
 

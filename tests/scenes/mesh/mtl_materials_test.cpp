@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the lines of an MTL file become.
+// Conversion of the lines of an MTL file.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -79,17 +79,17 @@ TEST(MtlMaterials, TexturesHaveTheirOptionsAndNamesWithBlanks) {
       "newmtl n\nmap_Kd old wood.png\nmap_d -imfchan m old wood.png\n"
       "newmtl clamped\nmap_Kd -clamp on edge.png\nnewmtl repeated\nmap_Kd -clamp off edge.png\n",
       folder.path() / "a.mtl", folders, mesh);
-  ASSERT_EQ(mesh.warnings.size(), 1U);  // none but that of map_Ke: every texture was read
+  ASSERT_EQ(mesh.warnings.size(), 1U);  // only for map_Ke: every texture was read
   const TextureMap& map = mesh.materials.at(0).maps->diffuse;
   EXPECT_EQ(map.texture->name(), "old wood.png");
-  // v runs up in the file and down here: (u, v) = (0.1, 0.2), w = 0.8, becomes u' = 0.25 + 0.2 and
-  // v' = 0.5 + 0.8, w' = 1 - v' = -0.3.
+  // v points up in the file and down here: (u, v) = (0.1, 0.2), w = 0.8, becomes u' = 0.25 + 0.2
+  // and v' = 0.5 + 0.8, w' = 1 - v' = -0.3.
   const glm::dvec2 place = map.transform->apply({0.1, 0.8});
   EXPECT_NEAR(place.x, 0.45, 1e-12);
   EXPECT_NEAR(place.y, -0.3, 1e-12);
   EXPECT_TRUE(mesh.materials.at(1).has_holes());
   EXPECT_EQ(mesh.materials.at(1).diffuse, Rgb(1.0));  // a texture without its Kd
-  // Three pictures to the left: the black edge, or half way from the white one to it.
+  // Three widths to the left: the black edge, or half way from the white edge to it.
   EXPECT_NEAR(mesh.materials.at(2).maps->diffuse.texture->at({-3.0, 0.5}).r, 0.0, 1e-9);
   EXPECT_NEAR(mesh.materials.at(3).maps->diffuse.texture->at({-3.0, 0.5}).r, 0.5, 1e-9);
   EXPECT_EQ(mesh.unused, (std::map<std::string, std::size_t>{{"map_Ke with options", 1}}));
@@ -109,7 +109,7 @@ TEST(MtlMaterials, ValuesOfTextureOptionsAreRefusedWhereTheyAreNone) {
   EXPECT_TRUE(holds(refusal("-s abc"), {"a.mtl:2:11", "\"abc\" is not a number"}));
   EXPECT_TRUE(holds(refusal("-o 1 1e300"), {"a.mtl:2:13", "\"1e300\""}));
   EXPECT_TRUE(holds(refusal("-clamp yes"), {"a.mtl:2:15", "\"yes\"", "on and off"}));
-  EXPECT_EQ(refusal("-s"), "was not refused");  // a.png is no value, and no file is left
+  EXPECT_EQ(refusal("-s"), "was not refused");  // no value, and no file name
 }
 
 TEST(MtlMaterials, OfMaterialsOfOneNameTheFirstCounts) {
@@ -149,7 +149,7 @@ TEST(MtlMaterials, CornersWithoutCoordinatesAreNamed) {
   base::write_png(folder.path() / "a.png", 1, 1, 3, std::vector<std::uint8_t>(3, 255));
   folder.put("a.obj",
              "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 0.5 0.25\nusemtl m\n"
-             "f 1/-1 2/1 3/7\nf 3 2 1\nmtllib ./a.mtl\n");  // named with every object by some
+             "f 1/-1 2/1 3/7\nf 3 2 1\nmtllib ./a.mtl\n");  // written with every object
   folder.put("a.mtl", "newmtl m\nKd 0.5\nmap_Kd a.png\n");
   const Scene scene =
       folder.read("format = 1\n[[object]]\nname = \"o\"\nmesh = \"a.obj\"\norient = \"as-is\"\n");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY files whose faces are strips of triangles, as Stanford's scans have them.
+// PLY files with triangle strips, as used by Stanford's scans.
 #include <gtest/gtest.h>
 
 #include "scenes/mesh/ply_file.h"
@@ -32,7 +32,8 @@ void put(std::string& out, const Format& format, const std::string& type, std::i
   out += raw;
 }
 
-// Vertices (x, y, 0) at whole x and y, two to a column: 0 (0,0), 1 (0,1), 2 (1,0), 3 (1,1), 4 (2,0) ...
+// Vertices (x, y, 0) at integer x and y, two per column: 0 (0,0), 1 (0,1), 2 (1,0), 3 (1,1), 4
+// (2,0) ...
 std::string ply(const Format& format, const std::vector<Strip>& strips, int vertices = 8,
                 const std::string& faces = "") {
   std::string text = std::string("ply\nformat ") + format.encoding + " 1.0\nelement vertex " +
@@ -76,7 +77,7 @@ const Format formats[] = {{"ascii", "int", "int"},
                           {"binary_big_endian", "int", "int"},
                           {"binary_big_endian", "uint8", "uint16"}};
 
-// Two unit squares apart from each other, as one list with -1 between them: 2 m2 in four triangles.
+// Two separate unit squares in one list with -1 between them: 2 m2 in four triangles.
 TEST(PlyStrips, MinusOneBeginsANewStrip) {
   for (const Format& format : formats) {
     const Mesh mesh = parse_ply(ply(format, {{0, 2, 1, 3, -1, 4, 6, 5, 7}}), "a.ply");
@@ -86,7 +87,7 @@ TEST(PlyStrips, MinusOneBeginsANewStrip) {
   }
 }
 
-// A strip of n corners has n - 2 triangles; the winding alternates and starts anew with each strip.
+// A strip of n corners has n - 2 triangles; the winding alternates and restarts with each strip.
 TEST(PlyStrips, EveryTriangleHasTheWindingOfTheFirst) {
   const Mesh band = parse_ply(ply({}, {{0, 2, 1, 3, -1, 2, 4, 3, 5}, {4, 6, 5, 7}}), "a.ply");
   EXPECT_EQ(band.polygons.size(), 6U);
@@ -98,7 +99,7 @@ TEST(PlyStrips, EveryTriangleHasTheWindingOfTheFirst) {
   EXPECT_DOUBLE_EQ(area_facing_up(whole), 2.0);
 }
 
-// Strips are also joined by repeated corners: their triangles have no area, and the parity goes on.
+// Repeated corners also join strips: their triangles have no area, and the parity continues.
 TEST(PlyStrips, TrianglesWithACornerTwiceJoinStrips) {
   const Mesh mesh = parse_ply(ply({}, {{0, 2, 1, 3, 3, 4, 4, 6, 5, 7}}), "a.ply");
   EXPECT_EQ(mesh.polygons.size(), 4U);
@@ -118,7 +119,7 @@ TEST(PlyStrips, FacesAndStripsAddUp) {
   EXPECT_DOUBLE_EQ(area_facing_up(mesh), 1.0);
 }
 
-// In a type without a sign 255 is a vertex where there are so many.
+// In an unsigned type 255 is a vertex if there are so many.
 TEST(PlyStrips, TheLargestNumberIsAVertexIfThereIsOne) {
   const Format format{"binary_little_endian", "int", "uint8"};
   EXPECT_EQ(parse_ply(ply(format, {{0, 2, 1, 255, 0, 2, 1}}), "a.ply").polygons.size(), 2U);
@@ -135,7 +136,7 @@ TEST(PlyStrips, BrokenStripsAreRefusedWithTheirPlace) {
   EXPECT_TRUE(test::holds(refusal(whole.substr(0, whole.size() - 3)), {"ends before its last"}));
 }
 
-// 2 m2 in the scene of the case, and a mesh without faces says what it has instead.
+// 2 m2 in the scene of the case; for a mesh without faces the error names its contents.
 TEST(PlyStrips, SceneReadsThem) {
   const test::SceneFolder folder;
   const std::string toml =

@@ -25,8 +25,8 @@ double area_of(const Mesh& mesh) {
   return area;
 }
 
-// Of a closed mesh: positive when its fronts look outward (divergence theorem); and the vector
-// areas of a closed surface add up to nothing.
+// Volume of a closed mesh, positive with fronts outward (divergence theorem); the vector areas of a
+// closed surface sum to 0.
 double volume_of(const Mesh& mesh) {
   double volume = 0.0;
   for (const MeshPolygon& p : mesh.polygons) {

@@ -26,7 +26,7 @@ double total_area(const std::vector<Vec3>& corners, const Triangulation& pieces)
                          [&](double sum, const auto& t) { return sum + area_of(corners, t); });
 }
 
-// All triangles turn as the polygon does.
+// All triangles have the polygon's winding.
 bool one_sense(const std::vector<Vec3>& corners, const Triangulation& pieces) {
   const Vec3 normal = vector_area(corners);
   return std::all_of(pieces.triangles.begin(), pieces.triangles.end(), [&](const auto& t) {
@@ -35,7 +35,7 @@ bool one_sense(const std::vector<Vec3>& corners, const Triangulation& pieces) {
   });
 }
 
-// A star with n points, in a slanted plane.
+// A star with n points, in an oblique plane.
 std::vector<Vec3> star(int n, double inner, double outer) {
   const base::Frame3 frame = base::frame_around(glm::normalize(Vec3(1.0, -2.0, 0.5)));
   std::vector<Vec3> corners;
@@ -70,7 +70,7 @@ TEST(Triangulate, ConcaveQuadIsDividedAtItsInnerCorner) {
   }
 }
 
-// The polygon that the usual library turns into 7.4 times its area: 33 narrow teeth.
+// A polygon whose area the usual library multiplies by 7.4: 33 narrow teeth.
 TEST(Triangulate, Concave66GonKeepsItsArea) {
   const auto corners = star(33, 0.05, 1.0);
   const double exact = 33 * 0.05 * 1.0 * std::sin(base::pi / 33);  // n r R sin(pi/n)
@@ -91,7 +91,7 @@ TEST(Triangulate, LargestPolygonKeepsItsAreaAndIsDividedAtOnce) {
 }
 
 TEST(Triangulate, StraightCornersKeepTheirPlaceInTheOutline) {
-  // Five corners on each side: without care some would end in triangles without area and leave
+  // Five corners on each side: a careless choice would end in triangles without area and leave
   // gaps.
   std::vector<Vec3> corners;
   for (int side = 0; side < 4; ++side) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polygons that are not flat: cut into triangles, and said so, whatever they look like.
+// Non-planar polygons of any shape: triangulated with a warning.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -30,8 +30,8 @@ double area_of(const Scene& scene) {
   return area;
 }
 
-// (0,0,0) (1,0,0) (1,1,h) (0,1,0) by the diagonal 1-3: two triangles of sqrt(1 + h^2) / 2 each. The
-// projection along the normal has sqrt(1 + h^2 / 2).
+// (0,0,0) (1,0,0) (1,1,h) (0,1,0) divided by the diagonal 1-3: two triangles of sqrt(1 + h^2) / 2
+// each. The projection along the normal has sqrt(1 + h^2 / 2).
 TEST(WarpedPolygons, AQuadIsCutAlongTheDiagonalOfItsFirstCorner) {
   for (const double h : {0.5, 1.0, 2.0, -0.5}) {
     const Scene scene =
@@ -47,7 +47,7 @@ TEST(WarpedPolygons, AQuadIsCutAlongTheDiagonalOfItsFirstCorner) {
   }
 }
 
-// Wherever it lies, whatever its unit and sense, and from whichever corner it begins.
+// For any position, unit, winding and first corner.
 TEST(WarpedPolygons, TheAreaIsThatOfOneOfTheTwoCuts) {
   const Vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}, {0, 1, 0}};
   for (const double scale : {1e-3, 1.0, 1e4}) {
@@ -56,7 +56,7 @@ TEST(WarpedPolygons, TheAreaIsThatOfOneOfTheTwoCuts) {
         std::string obj, face = "f";
         for (std::size_t k = 0; k < 4; ++k) {
           const Vec3 at = scale * corners[back ? (first + 4 - k) % 4 : (first + k) % 4];
-          // Any orthogonal turn keeps areas.
+          // An orthogonal transform preserves areas.
           obj += "v " + std::to_string(0.6 * at.x - 0.8 * at.z + 3 * scale) + " " +
                  std::to_string(at.y) + " " + std::to_string(0.8 * at.x + 0.6 * at.z) + "\n";
           face += " " + std::to_string(k + 1);
@@ -97,8 +97,8 @@ TEST(WarpedPolygons, PolygonsOfMoreCornersAreCutToo) {
   EXPECT_EQ(bent.warnings.size(), 1U);
 }
 
-// Folded so far that its edges cross as seen along the normal, or that it has no normal: in space
-// they pass each other, and it is cut by the diagonal that leaves the smaller area.
+// Folded so far that its projected edges cross, or that it has no normal: the edges do not meet in
+// space, and it is divided by the diagonal of smaller area.
 TEST(WarpedPolygons, AQuadThatCrossesOnlyInItsProjectionIsCut) {
   const std::vector<Vec3> folded[] = {{{0, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}},
                                       {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, 1, 0.5}}};

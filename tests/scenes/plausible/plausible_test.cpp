@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Input that obeys every rule and is surely a mistake is named once, with what to do; input that is
-// like it and meant is not.
+// Valid input that is almost certainly a mistake gives one warning with a remedy; similar intended
+// input gives none.
 #include "scenes/plausible/plausible.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ std::string body_of(const std::string& name, const std::string& low, const std::
                      low, high, more);
 }
 
-// A square of that half edge about the axis z, its front up.
+// A square of this half edge about the z axis, its front up.
 std::string plate(const std::string& name, double half, double z,
                   const std::string& more = "material = \"w\"\n") {
   return fmt::format(
@@ -62,7 +62,7 @@ void expect_none(const std::string& text, const SceneUse& use = {}) {
   EXPECT_TRUE(found.empty()) << text << fmt::format("{}", fmt::join(found, "\n"));
 }
 
-// The housing winds around the lamp once: every ray from it meets a back first.
+// The housing has winding number 1 about the lamp: every ray from it first hits a back.
 TEST(Plausible, ALampInAClosedHousingIsNamed) {
   const std::string lit = materials + plate("floor", 2, 0) + from_above;
   for (const char* lamp :
@@ -96,13 +96,13 @@ TEST(Plausible, AnEmittingObjectInAClosedHousingIsNamed) {
              {"all light of the emitting object \"bulb\"", "\"housing\""});
 }
 
-// Half of the light goes up, to the liner's back, the other half down and out: the camera over the
-// liner sees none of it. A second lamp over it is needed for nothing.
+// Half of the light goes up, to the liner's back, the other half down and out: the camera above the
+// liner sees none of it. A second lamp above it is not needed.
 TEST(Plausible, ALampBehindALinerIsNamed) {
   const std::string lit = materials + plate("liner", 5, 0) + from_above;
   expect_none(lit + point_lamp("[0, 0, 0.3]"));
   expect_one(lit + point_lamp("[0, 0, -0.3]"), {"of the light of lamp \"L\"", "\"liner\"", "none"});
-  // The hull behind the liner is lit, and no camera sees it.
+  // The hull behind the liner is lit, but no camera sees it.
   expect_one(
       lit + point_lamp("[0, 0, -0.3]") + plate("hull", 5, -1),
       {"of the light of lamp \"L\"", "\"liner\"", "none comes to a place that a camera sees"});
@@ -124,7 +124,7 @@ TEST(Plausible, AMaterialThatDoesNothingIsNamed) {
   }
 }
 
-// 410 km are 410000 m. GEO is at 35786 km.
+// 410 km are 410000 m. The altitude of GEO is 35786 km.
 TEST(Plausible, AnAltitudeInMetresIsNamed) {
   const auto at = [](const char* altitude) {
     return materials + plate("floor", 2, 0) + from_above + "[orbit]\naltitude_km = " + altitude +
@@ -154,7 +154,7 @@ TEST(Plausible, ASunBehindTheEarthIsNamed) {
   const std::string orbit = materials + plate("floor", 2, 0) + from_above +
                             "[orbit]\naltitude_km = 400\nposition_deg = 180\n";
   expect_one(orbit, {"the Earth hides all of the Sun", "position_deg", "109.5 to 250.5"});
-  expect_none(orbit + point_lamp("[0, 0, 2]"));  // night is meant
+  expect_none(orbit + point_lamp("[0, 0, 2]"));  // night is intended
   SceneUse along;
   along.moves_along_orbit = true;
   expect_none(orbit, along);
@@ -177,7 +177,7 @@ TEST(Plausible, AFieldInRadiansIsNamed) {
   // 0.87 rad are 49.8 deg; 3 m away 0.87 deg are 46 mm.
   expect_one(with("0.87", 2.0), {"\"A\"", "fov_deg = 0.87", "49.8"});
   expect_one(with("1.5708", 2.0), {"90"});
-  // A long lens shows a plate of 20 mm as a whole.
+  // A telephoto lens shows a plate of 20 mm completely.
   expect_none(with("0.87", 0.01));
   expect_none(with("20", 2.0));
   expect_none(with("0.1", 2.0));
@@ -192,7 +192,7 @@ TEST(Plausible, ABayOfMillimetresIsNamed) {
   };
   expect_one(scaled(0.001), {"mm across", "camera \"A\"", "unit"});
   expect_none(scaled(1.0));
-  // Without a camera the surfaces count, and a small thing in a large room is small on purpose.
+  // Without a camera the surfaces count; a small object in a large room is intended.
   expect_one(materials + plate("chip", 0.01, 0) + point_lamp("[0, 0, 2]"),
              {"28 mm across", "unit"});
   expect_none(materials + plate("chip", 0.01, 0) + point_lamp("[0, 0, 2]") + from_above);

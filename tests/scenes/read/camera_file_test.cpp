@@ -45,7 +45,7 @@ rows = 240
   EXPECT_TRUE(read("").cctv.empty());
 }
 
-// The scene's meshes need not even be there.
+// The scene's meshes need not exist.
 TEST_F(CameraTables, OfAWholeSceneOnlyTheseTablesAreRead) {
   const Scene scene = read(R"(format = 1
 [[object]]

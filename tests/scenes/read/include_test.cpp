@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// include = [...]: tables that a scene shares with others.
+// include = [...]: tables that scenes share.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -75,7 +75,7 @@ TEST_F(IncludedFiles, WhatCannotBeIncludedIsRefused) {
   }
 }
 
-// Every surface of the library keeps energy: reading a scene refuses one that does not.
+// Every material of the library conserves energy: reading a scene rejects others.
 TEST_F(IncludedFiles, ShippedMaterialsAreRead) {
   const Scene scene = folder.read(
       fmt::format("format = 1\ninclude = [\"{}/scenes/library/materials/spacecraft.toml\"]\n",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An instance is its original written out with the instance's own pose: its triangles, and what
-// rays meet. Rays meet instances by a structure of the original, moved (scenes/ray_structure.h).
+// An instance equals its original written out with the instance's pose: in its triangles, and in
+// the hits of rays. Rays use the original's ray structure with a transform
+// (scenes/ray_structure.h).
 #include <gtest/gtest.h>
 
 #include "base/numbers/random.h"
@@ -47,7 +48,7 @@ TEST(Instance, IsItsOriginalWrittenOutWithItsOwnPose) {
     EXPECT_EQ(a.material, b.material);
     EXPECT_EQ(a.polygon, b.polygon);
     for (std::size_t k = 0; k < 3; ++k) {
-      // Lengths of a metre go there and back by three products: some units of 1e-16.
+      // Lengths of about a metre after three products: a few units of 1e-16.
       EXPECT_LT(glm::length(made.vertices[a.vertex[k]] - written.vertices[b.vertex[k]]), 1e-14);
     }
   }
@@ -87,7 +88,7 @@ TEST(Instance, IsMetByTheSameRays) {
     instances_met += made.triangles[a.triangle].object > 0 ? 1 : 0;
     EXPECT_EQ(a.front, b.front);
     EXPECT_EQ(hits.front[0] != 0, b.front);
-    EXPECT_NEAR(a.t, b.t, 1e-4);  // along faces that are seen edge on
+    EXPECT_NEAR(a.t, b.t, 1e-4);  // for faces seen edge-on
     EXPECT_LT(glm::length(hit_position(made, a) - hit_position(written, b)), 1e-4);
   }
   EXPECT_GT(met, 5000U);

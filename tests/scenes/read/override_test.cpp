@@ -31,8 +31,8 @@ TEST(Override, SetsKeysOfTheSceneOfTablesAndOfNamedEntries) {
   EXPECT_EQ(std::get<std::string>(scene.monitor->settings.at(0).value), "sinc");
 }
 
-// However its strength is given. 0 of what has another key than intensity is the one value that all
-// know.
+// For any definition of its strength. 0 is the one value of `intensity` that lights with other keys
+// accept.
 TEST(Override, AnIntensityOfZeroTurnsOffALightOfAnyType) {
   const std::string at = "position = [0, 0, 1]\n", aim = at + "aim = [0, 0, 0]\n",
                     cone = aim + "beam_deg = 20\nfield_deg = 40\n",
@@ -56,7 +56,7 @@ TEST(Override, AnIntensityOfZeroTurnsOffALightOfAnyType) {
       EXPECT_EQ(lamp_flux_lm(scene.lamps.at(0)), Rgb(0.0)) << light << off;
     }
   }
-  // Any other strength is what its type has.
+  // Any other strength must use the type's own key.
   EXPECT_TRUE(holds(folder.refusal("format = 1\n[[light]]\nname = \"l\"\ntype = \"disk\"\n"
                                    "exitance = 5\n" +
                                        disk,

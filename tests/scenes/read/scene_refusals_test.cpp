@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene file may not say, and that the refusal names the place, the key and what would be
-// right.
+// Invalid scene files: the error names the place, the key and the correct form.
 #include <gtest/gtest.h>
 
 #include "tests/scenes/scene_text.h"
@@ -14,7 +13,7 @@ struct Case {
   std::vector<std::string> message;
 };
 
-// The scene is refused with a message that holds all that the case asks for.
+// The scene is rejected with a message that contains all texts of the case.
 void expect_refusals(const std::vector<Case>& cases) {
   const test::SceneFolder folder;
   for (const Case& c : cases) {

@@ -10,16 +10,16 @@
 namespace earthshine::scenes {
 namespace {
 
-// n = 0: the lobe is the half space about the mirrored direction. Seen from the angle t, of the
-// hemisphere's cosines (1 + cos t) / 2 lie in it, in the mean over cosines (1 + 2/3) / 2.
+// n = 0: the lobe is the half space about the mirrored direction. At angle t it contains (1 + cos
+// t) / 2 of the hemisphere's cosines; the cosine-weighted mean is (1 + 2/3) / 2.
 TEST(SpreadReflectance, OfALobeThatIsAHalfSpace) {
   EXPECT_NEAR(mean_lobe_reflectance(0.0), 5.0 / 6.0, 1e-3);
 }
 
-// A whole lobe is 2 pi / (n + 1) wide and its mean direction has (n + 1) / (n + 2) of the mirrored
-// one's cosine: 2 cos t / (n + 2) of what comes from t, in the mean over cosines 2/3 of it. Lobes
-// that the surface cuts off, at angles within some n^-1/2 of grazing, have little cosine: a term of
-// n^-3/2 relative to it.
+// A complete lobe has the solid angle 2 pi / (n + 1), and its mean direction (n + 1) / (n + 2) of
+// the mirrored one's cosine: it reflects 2 cos t / (n + 2) of the light from t, in the
+// cosine-weighted mean 2/3 of 2 / (n + 2). Lobes that the surface truncates, at angles within some
+// n^-1/2 of grazing, have small cosines: a relative term of n^-3/2.
 TEST(SpreadReflectance, OfNarrowLobes) {
   for (const double n : {400.0, 10000.0}) {
     EXPECT_NEAR(mean_lobe_reflectance(n) * (n + 2.0) * 0.75, 1.0, 1e-3 + 8.0 * std::pow(n, -1.5))
@@ -27,7 +27,7 @@ TEST(SpreadReflectance, OfNarrowLobes) {
   }
 }
 
-// By its definition with other points: pairs of directions by cosine.
+// By its definition with other points: pairs of cosine-distributed directions.
 TEST(SpreadReflectance, IsTheMeanOverBothDirections) {
   base::Rng rng(base::Key(5, base::Stream::FormFactor, 1));
   for (const double n : {0.5, 2.0, 11.0}) {
@@ -47,7 +47,7 @@ TEST(SpreadReflectance, IsTheMeanOverBothDirections) {
     const double mean = sum / count;
     const double error = std::sqrt((squares / count - mean * mean) / count);
     EXPECT_NEAR(mean_lobe_reflectance(n), mean, 4.0 * error + 1e-3 * mean) << n;
-    EXPECT_LT(mean_lobe_reflectance(n), 2.0 / (n + 2.0));  // what is granted at normal incidence
+    EXPECT_LT(mean_lobe_reflectance(n), 2.0 / (n + 2.0));  // the limit at normal incidence
   }
 }
 

@@ -32,7 +32,7 @@ Brdf seen_from(const Material& material, const Vec3& view) {
   return {material, material.diffuse, up, 2.0 * view.z * up - view, view.z};
 }
 
-// f(in, out) = f(out, in): alpha is the same from either side, and so is the larger cosine.
+// f(in, out) = f(out, in): alpha is the same from both sides, and so is the larger cosine.
 TEST(Brdf, IsReciprocal) {
   const Vec3 a = at_angle(0.4, 0.3), b = at_angle(1.1, 3.3);
   for (const bool even : {false, true}) {
@@ -45,7 +45,7 @@ TEST(Brdf, IsReciprocal) {
   }
 }
 
-// An estimate of the reflected light of a uniform unit sky is f cos / pdf by its definition.
+// By definition f cos / pdf estimates the reflected light of a uniform unit sky.
 TEST(Brdf, ASampleWeighsItsValueOverItsDensity) {
   base::Rng rng(base::Key(1, base::Stream::Test, 1));
   for (const bool even : {false, true}) {
@@ -68,7 +68,7 @@ TEST(Brdf, ASampleWeighsItsValueOverItsDensity) {
   }
 }
 
-// Midpoints of 400 x 800 cells over all directions; the lobe leans so far that a part of it lies
+// Midpoints of 400 x 800 cells over all directions; the lobe is so oblique that part of it lies
 // below the surface, which counts in its density.
 TEST(Brdf, DensitiesIntegrateToOne) {
   const Material material = glossy(7.0, false);
@@ -88,8 +88,8 @@ TEST(Brdf, DensitiesIntegrateToOne) {
   EXPECT_NEAR(specular * cell_sr, 1.0, 1e-4);
 }
 
-// Seen along the normal, where the larger cosine of an even lobe is that of the view, 1, the mean
-// weight is  integral of cos^n cos / pi = 2 / (n + 2).
+// Viewed along the normal the larger cosine of an even lobe is 1, the view's, and the mean weight
+// is the integral of cos^n cos / pi = 2 / (n + 2).
 TEST(Brdf, SamplesAlongTheNormalReflectTheAlbedo) {
   constexpr int samples = 1 << 14;
   for (const bool even : {false, true}) {
@@ -109,7 +109,8 @@ TEST(Brdf, SamplesAlongTheNormalReflectTheAlbedo) {
   }
 }
 
-// With density cos / pi the mean cosine is 2/3; midpoints of u: their error falls as count^-1.5.
+// With density cos / pi the mean cosine is 2/3; midpoints of u: their error decreases as
+// count^-1.5.
 TEST(Brdf, CosineSamplesHaveAMeanCosineOfTwoThirds) {
   constexpr int count = 10000;
   double sum = 0.0;

@@ -11,8 +11,8 @@
 namespace earthshine::scenes {
 namespace {
 
-// What GGX facets of reflectance 1 send back of light from `angle` to the normal: the integral of
-// D G1 G1 (i h) / cos i over their normals h, for tan h = a tan u.
+// Albedo of GGX facets of reflectance 1 for light at `angle` to the normal: the integral of D G1 G1
+// (i h) / cos i over the facet normals h, for tan h = a tan u.
 double ggx_albedo(double a, double angle) {
   constexpr int steps = 200, turns = 64;
   const double ci = std::cos(angle), si = std::sin(angle);
@@ -25,14 +25,14 @@ double ggx_albedo(double a, double angle) {
       const double ih = si * sh * std::cos(base::pi * (j + 0.5) / turns) + ci * ch;
       const double co = 2.0 * ih * ch - ci;
       if (ih <= 0.0 || co <= 0.0) continue;
-      // f cos out, over the solid angle 4 (i h) dh of the directions out.
+      // f cos out, over the solid angle 4 (i h) dh of the outgoing directions.
       sum += ggx_brdf(a, ci, co, ch) * co * 4.0 * ih * 2.0 * base::pi * sh * step / turns;
     }
   }
   return sum;
 }
 
-// The same of the lobe, whose directions are even by cos^(n + 1) alpha.
+// Albedo of the lobe, with directions uniform in cos^(n + 1) alpha.
 double lobe_albedo(const PhongLobe& lobe, double angle) {
   constexpr int steps = 200, turns = 64;
   const double ci = std::cos(angle), si = std::sin(angle);
@@ -55,15 +55,15 @@ TEST(Microfacet, RoughestFacetsReflectWhatTheIntegralSays) {
 }
 
 TEST(Microfacet, ValueOffTheHighlightIsTheOneWorkedByHand) {
-  // a^2 = 1/3, light along the normal, view at 60 degrees, half way at 30: D = a^2 / (pi (1 - 3/4
-  // 2/3)^2) = 4 / (3 pi), divided by (1 + 1) (1/2 + sqrt(1/3 + 2/3 1/4)) = 1 + sqrt 2.
+  // a^2 = 1/3, light along the normal, view at 60 degrees, half vector at 30: D = a^2 / (pi (1 -
+  // 3/4 2/3)^2) = 4 / (3 pi), divided by (1 + 1) (1/2 + sqrt(1/3 + 2/3 1/4)) = 1 + sqrt 2.
   EXPECT_NEAR(ggx_brdf(std::sqrt(1.0 / 3.0), 1.0, 0.5, std::sqrt(0.75)),
               4.0 / (3.0 * base::pi * (1.0 + std::sqrt(2.0))), 1e-12);
 }
 
 TEST(Microfacet, LobesKeepTheAlbedoOfTheFacets) {
-  // The largest relative differences at these angles (tests/validation/metal_lobes.py). Rough
-  // facets send back more of slanting light, which no lobe about the mirror direction does.
+  // Largest relative differences at these angles (tests/validation/metal_lobes.py). Rough facets
+  // reflect more of oblique light, which no lobe about the mirror direction does.
   struct Bound {
     double up_to, at_0_60, at_80;
   };

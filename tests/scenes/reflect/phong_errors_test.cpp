@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fit_phong's standard errors: known k_d, k_s and n under noise.
+// fit_phong's standard errors: known k_d, k_s and n with noise.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -27,12 +27,12 @@ double reflectance(const Truth& truth, double angle_deg) {
          truth.specular * std::pow(std::cos(base::radians(angle_deg)), truth.shininess);
 }
 
-double gauss(base::Rng& rng) {  // Box and Muller
+double gauss(base::Rng& rng) {  // Box-Muller transform
   const double u = 1.0 - rng.next();
   return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * base::pi * rng.next());
 }
 
-// Every 5 degrees from -80 to 80: 33 points, so that 30 degrees of freedom are left.
+// Every 5 degrees from -80 to 80: 33 points, hence 30 degrees of freedom.
 std::vector<ReflectancePoint> measured(const Truth& truth, double noise, ReflectanceNoise kind,
                                        std::uint64_t item) {
   base::Rng rng(base::Key(truth.seed, base::Stream::Test, item));
@@ -56,7 +56,7 @@ struct Pulls {
   }
 };
 
-// Of k_d, k_s and n.
+// For k_d, k_s and n.
 std::array<Pulls, 3> pulls_of(const Truth& truth, double noise, ReflectanceNoise kind,
                               PhongFit PhongFits::*method) {
   std::array<Pulls, 3> pulls;
@@ -70,9 +70,9 @@ std::array<Pulls, 3> pulls_of(const Truth& truth, double noise, ReflectanceNoise
   return pulls;
 }
 
-// The noise is estimated from the residuals, hence a pull follows Student's t with nu = 30: mean 0,
-// variance nu / (nu - 2) = 1.0714, fourth moment 3 nu^2 / ((nu - 2)(nu - 4)) = 3.709, 94.54 %
-// within 2. Four standard errors of 400 curves each.
+// The noise is estimated from the residuals, so that a pull follows Student's t with nu = 30: mean
+// 0, variance nu / (nu - 2) = 1.0714, fourth moment 3 nu^2 / ((nu - 2)(nu - 4)) = 3.709, 94.54 %
+// within 2. Tolerance: four standard errors of 400 curves each.
 void expect_students_t(const std::array<Pulls, 3>& pulls) {
   constexpr double variance = 30.0 / 28.0, fourth = 3.709, within_two = 0.9454;
   for (const Pulls& p : pulls) {
@@ -100,8 +100,8 @@ INSTANTIATE_TEST_SUITE_P(Of, PhongPulls,
                                            Truth{0.6, 0.5, 15.0, 3}, Truth{0.2, 0.5, 3.0, 4}));
 
 TEST(PhongErrors, WeakNarrowLobeIsStillCoveredWhereItsErrorsAreNoLongerSmall) {
-  // n is known to 15 % only, from four points on each side: what is left out, of second order,
-  // widens the pulls by some 6 % (measured with 4000 curves) and their coverage by up to 0.02.
+  // n has an error of 15 %, from four points on each side: the neglected second order widens the
+  // pulls by some 6 % (measured with 4000 curves) and changes their coverage by up to 0.02.
   const auto pulls = pulls_of({0.6, 0.3, 30.0, 3}, 0.05, ReflectanceNoise::Proportional,
                               &PhongFits::least_squares);
   for (const Pulls& p : pulls) {
@@ -111,15 +111,15 @@ TEST(PhongErrors, WeakNarrowLobeIsStillCoveredWhereItsErrorsAreNoLongerSmall) {
 }
 
 TEST(PhongErrors, ReportsMethodCarriesSmallNoiseToFirstOrder) {
-  // cos^40(80 deg) = 5e-31: nothing of the lobe is left where k_d is read. Points at which it is
-  // 1 % of k_s come and go with larger noise, which no propagation knows.
+  // cos^40(80 deg) = 5e-31: the lobe vanishes where k_d is read. With larger noise, points at which
+  // it is 1 % of k_s would enter and leave, which error propagation does not cover.
   expect_students_t(
       pulls_of({0.3, 0.9, 40.0, 5}, 1e-3, ReflectanceNoise::Proportional, &PhongFits::report));
 }
 
 TEST(PhongErrors, NoiseItselfIsRecovered) {
   // s^2 nu / sigma^2 follows chi squared with nu = 30: s / sigma has a standard error of
-  // 1/sqrt(60). Here the mean over 400 curves, and its bias of -1/(4 nu).
+  // 1/sqrt(60). Here the mean over 400 curves, with its bias of -1/(4 nu).
   double sum = 0.0;
   for (std::uint64_t item = 0; item < curves; ++item) {
     const Truth truth{0.3, 0.9, 20.0, 6};
@@ -140,8 +140,8 @@ TEST(PhongErrors, MoreNoiseMakesProportionallyLargerErrors) {
 }
 
 TEST(PhongErrors, LobeThatIsNotThereLeavesKsAndNUndetermined) {
-  // Of flat curves under 5 % noise a lobe may be found by chance: the F test allows 0.1 % for one
-  // given n, and n is searched for over some five lobes that 33 points can tell apart.
+  // For flat curves with 5 % noise a lobe may be found by chance: the F test allows 0.1 % for a
+  // given n, and the search over n covers some five lobes that 33 points can resolve.
   int found = 0;
   for (std::uint64_t item = 0; item < curves; ++item) {
     const PhongFits fits =
@@ -169,7 +169,7 @@ TEST(PhongErrors, LobeBetweenTwoAnglesLeavesNUndeterminedAndKsDetermined) {
   const PhongFits fits =
       fit_phong(measured({0.3, 0.9, 20000.0, 9}, 0.05, ReflectanceNoise::Proportional, 0), "test");
   EXPECT_FALSE(fits.least_squares.std_error.shininess.has_value());
-  // One point stands for k_s: 5 % of R(0) = 1.2, to within the estimate of the noise.
+  // A single point determines k_s: 5 % of R(0) = 1.2, to within the estimate of the noise.
   EXPECT_NEAR(*fits.least_squares.std_error.specular, 0.06, 4.0 * 0.06 / std::sqrt(60.0) + 0.012);
   ASSERT_FALSE(fits.notes.empty());
   EXPECT_NE(fits.notes[0].find("narrower than the steps"), std::string::npos);

@@ -54,7 +54,7 @@ class PhongFile : public ::testing::Test {
 };
 
 TEST(PhongFit, BothMethodsRecoverASyntheticHighlight) {
-  // cos^20(80 deg) = 6e-16, so the value at 80 degrees is k_d to rounding.
+  // cos^20(80 deg) = 6e-16, so that the value at 80 degrees is k_d to rounding.
   const PhongFits fits = fit_phong(sampled(0, 85, 5, 0.3, 0.9, 20.0), "test");
   for (const PhongFit& fit : {fits.report, fits.least_squares}) {
     EXPECT_NEAR(fit.diffuse, 0.3, 1e-6);
@@ -66,8 +66,8 @@ TEST(PhongFit, BothMethodsRecoverASyntheticHighlight) {
 }
 
 TEST(PhongFit, LeastSquaresRecoversABroadHighlightThatTheReportsMethodMisses) {
-  // At n = 2 the lobe still gives k_s cos^2(80) = 0.03 k_s at 80 degrees, which the report takes
-  // for k_d.
+  // At n = 2 the lobe still has k_s cos^2(80) = 0.03 k_s at 80 degrees, which the report's method
+  // counts as k_d.
   const PhongFits fits = fit_phong(sampled(0, 80, 5, 0.2, 0.5, 2.0), "test");
   EXPECT_NEAR(fits.report.diffuse, 0.2 + 0.5 * std::pow(std::cos(base::radians(80.0)), 2), 1e-12);
   EXPECT_NEAR(fits.least_squares.diffuse, 0.2, 1e-6);
@@ -100,7 +100,7 @@ TEST(PhongFit, FlatDataHaveNoHighlight) {
   const PhongFits fits = fit_phong(sampled(0, 80, 10, 0.5, 0.0, 1.0), "test");
   EXPECT_EQ(fits.report.specular, 0.0);
   EXPECT_NEAR(fits.least_squares.diffuse + fits.least_squares.specular, 0.5, 1e-9);
-  ASSERT_EQ(fits.notes.size(), 2U);  // of each method
+  ASSERT_EQ(fits.notes.size(), 2U);  // one per method
   EXPECT_NE(fits.notes[1].find("no highlight above the noise"), std::string::npos);
 }
 

@@ -20,7 +20,8 @@ Scene square(const Material& material) {
 }
 
 TEST(Specular, StepFromACornerStartsInsideTheMirrorOnTheReflectedSide) {
-  // A hundred-thousandth of the way from the corner (0, 0) to the triangle's middle (2/3, 1/3).
+  // A hundred-thousandth of the distance from the corner (0, 0) to the triangle's middle (2/3,
+  // 1/3).
   Material mirror = tests::grey(0.0);
   mirror.mirror = Rgb(0.9);
   const Scene scene = square(mirror);
@@ -32,8 +33,8 @@ TEST(Specular, StepFromACornerStartsInsideTheMirrorOnTheReflectedSide) {
   EXPECT_NEAR(glm::length(step.direction - glm::normalize(Vec3(1, 0, 1))), 0.0, 1e-15);
 }
 
-// Aimed rays stay on their line, so that they come to what they were aimed at, unless that leads
-// past the triangle's edge, where a wall may stand.
+// Aimed rays stay on their line, so that they reach their target, unless this leads past the
+// triangle's edge, where a wall may be.
 TEST(Specular, AimedStepsThroughASheetStayOnTheirLine) {
   Material glass = tests::grey(0.0);
   glass.transmit = Rgb(0.9);
@@ -52,7 +53,7 @@ TEST(Specular, AimedStepsThroughASheetStayOnTheirLine) {
   EXPECT_NEAR(found.origin.z, -offset, 1e-15);
 }
 
-// A mirror's reflection of a grazing ray is all but its own way.
+// A mirror reflects a grazing ray nearly along its own direction.
 TEST(Specular, WhatIsMoreOfAMirrorThanGlassLetsNothingStraightOn) {
   Material pane = tests::grey(0.0);
   pane.two_sided = true;
@@ -76,8 +77,8 @@ TEST(Specular, StepThroughGlassGoesOnBelow) {
   EXPECT_LT(step.direction.z, 0.0);
 }
 
-// Between two mirrors that face each other a ray never ends: the visitor ends it. A ray that may only
-// go straight on ends at the first.
+// Between two parallel mirrors a ray never ends: the visitor ends it. A ray that may only continue
+// straight ends at the first mirror.
 TEST(Specular, ARayIsFollowedUntilItsVisitorEndsIt) {
   tests::SceneBuilder builder;
   Material mirror = tests::grey(0.0);

@@ -61,7 +61,7 @@ TEST(Round, CylinderOfEightSidesBecomesOneOfItsRadiusAndItsCapsFollow) {
   for (const Vec3& v : scene.vertices) {
     const double radius = std::hypot(v.x, v.y);
     // The flat sides are 7.6 % short of the radius in their middle. The rims are arcs, but the
-    // diagonals that the sides are cut along are not quite the ellipses that they should be.
+    // diagonals of the sides only approximate ellipses.
     if (v.z > 1e-9 && v.z < 2.0 - 1e-9) {
       EXPECT_NEAR(radius, 1.0, 1e-2);
     } else {
@@ -97,14 +97,14 @@ double sharpest_edge(const Scene& scene) {
 }
 
 TEST(Round, NeighboursTurnByNoMoreThanIsWanted) {
-  const Mesh twelve = make_sphere({0, 0, 0}, 1.0, 12);  // 30 degrees an edge
+  const Mesh twelve = make_sphere({0, 0, 0}, 1.0, 12);  // 30 degrees per edge
   EXPECT_GT(sharpest_edge(scene_of(twelve, "", true)), 25.0);
   for (const double wanted : {15.0, 7.5, 3.0}) {
     const Scene scene = scene_of(twelve, fmt::format("round_deg = {}\n", wanted), true);
-    // Edges turn by what is wanted; faces on either side of one by a quarter more, and patches do
-    // not quite have one tangent plane where they meet.
+    // Edges turn by the wanted angle; faces at an edge by a quarter more, and patches do not have
+    // exactly one tangent plane where they meet.
     EXPECT_LT(sharpest_edge(scene), 1.25 * wanted + 0.75) << wanted;
-    // 120 triangles, whose longest edge, a diagonal, turns by 41 degrees at most.
+    // 120 triangles, whose longest edge, a diagonal, turns by at most 41 degrees.
     EXPECT_LT(double(scene.triangles.size()), 120.0 * std::pow(std::ceil(41.5 / wanted), 2.0));
   }
 }
@@ -115,16 +115,16 @@ TEST(Round, FlatFacesAndCreasesStayAsTheyAre) {
   const Mesh whole = rounded(box, {60.0, 1.0}, {});
   EXPECT_EQ(whole.vertices.size(), box.vertices.size());
   EXPECT_EQ(whole.indices, box.indices);
-  // Small turns are turns too: 3 degrees an edge in pieces of 1.
+  // Small turns are refined too: 3 degrees per edge in segments of 1.
   const Mesh fine = make_cylinder({0, 0, 0}, {0, 0, 1}, 1.0, 120, false);
   EXPECT_GE(scene_of(fine, "smooth_deg = 30\nround_deg = 1\n").triangles.size(), 3U * 240U);
-  // Beyond the right angle of its edges the same box is a pillow.
+  // With a crease angle above its right angles the same box becomes a pillow.
   EXPECT_GT(scene_of(box, "smooth_deg = 91\nround_deg = 10\n").triangles.size(), 500U);
   expect_closed(scene_of(box, "smooth_deg = 91\nround_deg = 10\n"));
 }
 
 TEST(Round, NeighboursThatAreCutDifferentlyMeet) {
-  // A cone: its tip turns much, its foot little.
+  // A cone: strongly curved at its tip, weakly at its base.
   Mesh cone = make_disk({0, 0, 0}, {0, 0, -1}, 1.0, 9);
   const auto tip = static_cast<std::uint32_t>(cone.vertices.size());
   cone.vertices.emplace_back(0.1, 0.2, 1.5);
@@ -143,7 +143,7 @@ TEST(Round, TextureCoordinatesAreMixed) {
   const Mesh made = rounded(mesh, {60.0, 5.0}, {});
   ASSERT_EQ(made.uv_indices.size(), made.indices.size());
   for (std::size_t k = 0; k < made.indices.size(); ++k) {
-    // Along the axis nothing is bent.
+    // There is no curvature along the axis.
     EXPECT_NEAR(double(made.uv[made.uv_indices[k]].y), made.vertices[made.indices[k]].z, 0.02);
   }
 }
@@ -151,14 +151,14 @@ TEST(Round, TextureCoordinatesAreMixed) {
 TEST(CornerNormals, StandOnTheirPolygonsSide) {
   Mesh mesh;
   mesh.part_sets.emplace_back();
-  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};  // its front looks up
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};  // its front faces up
   add_polygon(mesh, std::array<std::uint32_t, 3>{0, 1, 2}, 0, no_index);
   mesh.normals = {{0, 0, 2}, {0.6F, 0, -0.8F}, {0, 0, 0}};
   mesh.normal_indices = {0, 1, 2};
   const std::vector<Vec3> normals = corner_normals(mesh, {0, 1, 2}, std::nullopt);
   EXPECT_LT(glm::length(normals[0] - Vec3(0, 0, 1)), 1e-6);
   EXPECT_LT(glm::length(normals[1] - Vec3(-0.6, 0, 0.8)), 1e-6);
-  EXPECT_LT(glm::length(normals[2] - Vec3(0, 0, 1)), 1e-6);  // none of the file's: the polygon's
+  EXPECT_LT(glm::length(normals[2] - Vec3(0, 0, 1)), 1e-6);  // no normal in the file
 }
 
 TEST(Round, PlyAndGltfHaveNormalsToo) {

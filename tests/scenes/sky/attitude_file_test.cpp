@@ -34,8 +34,9 @@ class AttitudeFile : public ::testing::Test {
   test::SceneFolder folder;
 };
 
-// A full roll in two rows is none: slerp takes the shorter way. Rows that only pass from 360 to 0 or
-// from 180 to -180 deg, or name a small turn otherwise near the zenith, are as they are meant.
+// A full roll in two rows is no rotation: slerp takes the shorter way. No warning for rows that
+// only wrap from 360 to 0 or from 180 to -180 deg, or that represent a small rotation near the
+// zenith by large angles.
 TEST_F(AttitudeFile, RowsHalfATurnApartAreNamed) {
   const auto warnings = [&](const std::string& rows) {
     std::string csv = "position_deg, yaw_deg, pitch_deg, roll_deg\n";
@@ -61,7 +62,7 @@ TEST_F(AttitudeFile, RowsHalfATurnApartAreNamed) {
         "0,80,0;180,85,180", "0,0,179.9;0,0,-179.9;0,0,179.8", "120,0,170"}) {
     EXPECT_TRUE(warnings(meant).empty()) << meant;
   }
-  // By quaternions only the turn itself tells; q and -q are one attitude.
+  // With quaternions only the rotation itself counts; q and -q are the same attitude.
   folder.put("turns.csv", "time_s,qw,qx,qy,qz\n0,1,0,0,0\n6000,0,1,0,0\n");
   ASSERT_EQ(folder.read(scene_text).warnings.size(), 1U);
   folder.put("turns.csv", "time_s,qw,qx,qy,qz\n0,1,0,0,0\n6000,-1,0,0,0\n");
@@ -91,8 +92,8 @@ TEST_F(AttitudeFile, NamedAttitudesAreTurnsOfTheLocalVertical) {
 
 TEST_F(AttitudeFile, AnglesTurnByTheAerospaceMatrix) {
   // Rows of the matrix from the local vertical to the spacecraft's axes for the sequence yaw,
-  // pitch, roll (Kuipers 1999, Quaternions and Rotation Sequences, 4.4); its third column is the
-  // nadir, its first the velocity, where the Sun of beta 0 stands at -90 deg.
+  // pitch, roll (Kuipers 1999, Quaternions and Rotation Sequences, 4.4). Its third column is the
+  // nadir, its first the velocity, where the Sun of beta 0 is at -90 deg.
   const double yaw = 0.7, pitch = -0.4, roll = 2.1;
   const double cy = std::cos(yaw), sy = std::sin(yaw), cp = std::cos(pitch), sp = std::sin(pitch),
                cr = std::cos(roll), sr = std::sin(roll);
@@ -110,12 +111,12 @@ TEST_F(AttitudeFile, AnglesTurnByTheAerospaceMatrix) {
 }
 
 TEST_F(AttitudeFile, BetweenRowsTheTurnIsEven) {
-  // Rolling 90 deg in 60 deg of the orbit: by a third of it the starboard side is 30 deg down.
+  // A roll of 90 deg in 60 deg of the orbit: after a third of it the starboard side is 30 deg down.
   const Orbit rolling = orbit("position_deg,yaw_deg,pitch_deg,roll_deg\n-60,0,0,0\n0,0,0,90\n");
   EXPECT_NEAR(orbit_state(rolling, -40.0).earth.y, std::sin(base::radians(30.0)), 1e-12);
   EXPECT_NEAR(orbit_state(rolling, -60.0).earth.z, -1.0, 1e-12);
   EXPECT_NEAR(orbit_state(rolling, 0.0).earth.y, 1.0, 1e-12);
-  // From yaw 350 to yaw 10 the short way leads through 0; q and -q are one turn.
+  // From yaw 350 to yaw 10 the shorter way passes 0; q and -q are the same rotation.
   const Orbit yawing = orbit("position_deg,yaw_deg,pitch_deg,roll_deg\n0,350,0,0\n10,10,0,0\n");
   const Orbit still = orbit("position_deg,qw,qx,qy,qz\n0,1,0,0,0\n10,-1,0,0,0\n");
   expect_same(orbit_state(yawing, 5.0), orbit_state(still, 5.0), "yaw");
@@ -144,11 +145,11 @@ TEST_F(AttitudeFile, BeyondItsRowsThereIsNoAttitude) {
                         {"turns.csv", "which is time_s = ", "from time_s -10 to 600", "Add rows"}));
     }
   }
-  // So is the scene whose own position is there.
+  // Likewise a scene whose own position is there.
   EXPECT_TRUE(holds(
       refusal("position_deg,qw,qx,qy,qz\n10,1,0,0,0\n500,0,1,0,0\n"),
       {"turns.csv", "no attitude at position_deg = 0; its rows go from position_deg 10 to 500"}));
-  // One row holds everywhere.
+  // A single row is valid everywhere.
   EXPECT_NO_THROW(static_cast<void>(orbit_state(orbit("time_s,qw,qx,qy,qz\n7,1,0,0,0\n"), 999.0)));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Illuminance of open plates from the Earth and the Sun, tilted any way, against closed forms.
+// Illuminance of open plates at any tilt from the Earth and the Sun, against closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ Scene over_the_earth(double altitude_m, EarthModel model) {
   return scene;
 }
 
-// The Sun so that it stands theta from the spacecraft's zenith, at the Earth's centre.
+// Places the Sun at theta from the spacecraft's zenith, at the Earth's centre.
 void put_sun(Scene& scene, double theta_deg) {
   const double theta = base::radians(theta_deg);
   Sun sun;
@@ -64,7 +64,7 @@ double view_factor(double distance, double tilt_rad) {
 }
 
 TEST(EarthPlate, TiltedPlatesSeeTheUniformDiscByTheClosedForm) {
-  // E = pi L F. The printed table of F (three digits) pins the closed form itself.
+  // E = pi L F. The printed table of F (three digits) verifies the closed form.
   struct Row {
     double altitude_km;
     double printed[7];
@@ -77,7 +77,7 @@ TEST(EarthPlate, TiltedPlatesSeeTheUniformDiscByTheClosedForm) {
       const double tilt = base::radians(30.0 * k);
       const double exact = view_factor((6371.0 + row.altitude_km) / 6371.0, tilt);
       EXPECT_NEAR(exact, row.printed[k], 5.1e-4) << 30 * k;
-      // Where the plate's horizon cuts the disc the midpoint rule loses its higher order.
+      // Where the plate's horizon cuts the disc the midpoint rule has a lower order.
       EXPECT_NEAR(illuminance(scene, Vec3(std::sin(tilt), 0.0, std::cos(tilt))) / pi, exact, 3e-5)
           << row.altitude_km << " km, " << 30 * k << " deg";
     }
@@ -86,7 +86,7 @@ TEST(EarthPlate, TiltedPlatesSeeTheUniformDiscByTheClosedForm) {
 
 TEST(EarthPlate, LambertEarthFollowsItsPhaseAt296And425Km) {
   // A of E = albedo E_sun A for plates that face the nadir, from independent integration (four
-  // digits printed); at 425 km and 110 deg the last light is gone in that figure.
+  // printed digits); at 425 km and 110 deg it is 0 to four digits.
   const double theta[] = {0, 30, 60, 80, 90, 100, 110};
   const double low[] = {0.9109, 0.7888, 0.4554, 0.1583, 0.0162, 0.0001, 0.0};
   const double high[] = {0.8749, 0.7577, 0.4375, 0.1524, 0.0212, 0.0005, 0.0};
@@ -100,9 +100,8 @@ TEST(EarthPlate, LambertEarthFollowsItsPhaseAt296And425Km) {
 }
 
 TEST(EarthPlate, TurningThePlateRoundTheNadirMixesSunSideAndAway) {
-  // The illuminance vector: a vertical plate in azimuth psi from the Sun sees, for a disc that no
-  // horizon but its own cuts, E(psi) + E(psi + 180 deg) = 2 E(90 deg) at the full Earth (theta =
-  // 0), where every azimuth is alike.
+  // Vertical plates at azimuth psi from the Sun, for a disc cut only by its own horizon: E(psi) +
+  // E(psi + 180 deg) = 2 E(90 deg). At the full Earth (theta = 0) all azimuths are equal.
   Scene scene = over_the_earth(425e3, EarthModel::Lambert);
   put_sun(scene, 0.0);
   const double across = illuminance(scene, Vec3(0, 1, 0));
@@ -113,7 +112,7 @@ TEST(EarthPlate, TurningThePlateRoundTheNadirMixesSunSideAndAway) {
 }
 
 TEST(EarthPlate, SunSamplesGiveAPlateItsIlluminanceByTheCosineLaw) {
-  // E cos(tilt) for any size of the disc as long as all of it is above the plate's horizon: mean of
+  // E cos(tilt) for any size of the disc if all of it is above the plate's horizon: mean of
   // independent samples within four standard errors.
   Scene scene;
   for (const double radius : {0.2666, 20.0}) {

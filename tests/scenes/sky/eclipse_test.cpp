@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// When the spacecraft is in the Earth's shadow: closed forms of shadow cylinder and cones, and the
-// share of the Sun that the light itself is made with.
+// Passage through the Earth's shadow: closed forms of shadow cylinder and cones, and the visible
+// share of the Sun that the light uses.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ Orbit orbit_of(double altitude_km, double beta_deg) {
   return orbit;
 }
 
-// The position between low, where the condition does not hold, and high, where it does.
+// The position between low, where the condition is false, and high, where it is true.
 double where_it_begins(double low, double high, const std::function<bool(double)>& holds) {
   for (int step = 0; step < 60; ++step) {
     const double middle = 0.5 * (low + high);
@@ -60,15 +60,15 @@ TEST(Eclipse, Takes387ThousandthsOfALowOrbitAt425Km) {
   const double period_s = orbit_period_s(425e3);
   EXPECT_NEAR((found.umbra->end_s - found.umbra->begin_s) / period_s, 0.387, 5e-4);
   EXPECT_NEAR(found.umbra->begin_s / period_s, found.umbra->begin_deg / 360.0, 1e-12);
-  // The Sun's disc sinks in some 8 s: 2 x 0.2666 deg at 3.87 deg a minute.
+  // The Sun's disc sets in some 8 s: 2 x 0.2666 deg at 3.87 deg a minute.
   const Eclipse wide = find_eclipse(orbit_of(425.0, 0.0), sun_deg);
   EXPECT_NEAR(wide.umbra->begin_s - wide.penumbra->begin_s, 2.0 * sun_deg / 3.87 * 60.0, 0.05);
 }
 
 TEST(Eclipse, OfTheSunsDiscIsBoundedByTheShadowCones) {
-  // Planes that touch the Earth and are inclined by the Sun's radius r: at the distance x behind
-  // the Earth's middle the umbra has the radius R / cos r - x tan r, the penumbra R / cos r + x
-  // tan r. The spacecraft is at x = -a cos beta cos phi, sqrt(a^2 - x^2) from the axis.
+  // Planes tangent to the Earth and inclined by the Sun's radius r: at the distance x behind the
+  // Earth's middle the umbra has the radius R / cos r - x tan r, the penumbra R / cos r + x tan r.
+  // The spacecraft is at x = -a cos beta cos phi, sqrt(a^2 - x^2) from the axis.
   const double r = base::radians(sun_deg);
   for (const double altitude_km : {200.0, 425.0, 1500.0, 35786.0}) {
     for (const double beta_deg : {0.0, 6.0, -15.0, 55.0}) {
@@ -115,7 +115,7 @@ TEST(Eclipse, IsWhereTheLightOfTheSunFades) {
 }
 
 TEST(Eclipse, EndsWhereTheSunStandsTooHighOverTheOrbit) {
-  // At midnight the Sun stands beta from the Earth's middle; the limb is 69.62 deg from it.
+  // At midnight the Sun is beta from the Earth's middle; the limb is 69.62 deg from it.
   const double limb_deg = base::degrees(earth_half_angle_rad(425e3));
   const Eclipse grazing = find_eclipse(orbit_of(425.0, limb_deg), sun_deg);
   EXPECT_TRUE(grazing.penumbra);
@@ -129,14 +129,14 @@ TEST(Eclipse, EndsWhereTheSunStandsTooHighOverTheOrbit) {
 }
 
 TEST(Eclipse, LastsAllTheOrbitOrIsNeverWholeWhereTheDiscsAreSo) {
-  // 10 m over the ground the limb is 0.1 deg below the horizontal: seen from over the terminator
-  // all along, the Sun's disc of 0.2666 deg never clears it.
+  // At 10 m the limb is 0.1 deg below the horizontal: always above the terminator, the Sun's disc
+  // of 0.2666 deg never clears the limb.
   const Eclipse dusk = find_eclipse(orbit_of(0.01, 90.0), sun_deg);
   ASSERT_TRUE(dusk.penumbra);
   EXPECT_EQ(dusk.penumbra->begin_deg, 0.0);
   EXPECT_EQ(dusk.penumbra->end_deg, 360.0);
   EXPECT_FALSE(dusk.umbra);
-  // From 10^6 km the Earth's disc, 0.36 deg, still hides the Sun's, but not one of 0.5 deg.
+  // From 10^6 km the Earth's disc, 0.36 deg, still hides the Sun's, but not a disc of 0.5 deg.
   EXPECT_TRUE(find_eclipse(orbit_of(1e6, 0.0), sun_deg).umbra);
   EXPECT_FALSE(find_eclipse(orbit_of(1e6, 0.0), 0.5).umbra);
   EXPECT_TRUE(find_eclipse(orbit_of(1e6, 0.0), 0.5).penumbra);

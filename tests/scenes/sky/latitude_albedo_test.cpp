@@ -14,7 +14,7 @@ namespace {
 
 using base::radians;
 
-// Over the Earth at 425 km, the Sun theta from the zenith.
+// At 425 km above the Earth, the Sun theta from the zenith.
 Scene over_the_earth(double theta_deg) {
   Scene scene;
   scene.sun.emplace().direction =
@@ -42,7 +42,7 @@ TEST(LatitudeAlbedo, IsKnockesPolynomialBetween0And1) {
 }
 
 TEST(LatitudeAlbedo, OverTheWholeSphereHasTheMeanA0) {
-  // Area goes with sin(latitude), and Legendre's polynomials are orthogonal to 1.
+  // Area is proportional to sin(latitude), and Legendre's polynomials are orthogonal to 1.
   LatitudeAlbedo law;
   law.a1 = -0.076;
   double sum = 0.0;
@@ -65,8 +65,8 @@ TEST(LatitudeAlbedo, LargestIsTheMostOfAllLatitudes) {
 }
 
 TEST(LatitudeAlbedo, DimsEveryPlaceByItsLatitude) {
-  // The place is where a march along the direction meets the ground, its latitude the angle from
-  // the equator there; what the mean albedo 1 gives times the law is the radiance.
+  // The ground point is found by marching along the direction; its latitude is the angle from the
+  // equator. The radiance with mean albedo 1 times the law is the expected radiance.
   Scene by_latitude = over_the_earth(40.0);
   const Scene mean = by_latitude;
   LatitudeAlbedo& law = by_latitude.earth->by_latitude.emplace();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// [orbit] and the albedo of [earth] as scene files give them.
+// [orbit] and the albedo of [earth] in scene files.
 #include <gtest/gtest.h>
 
 #include "scenes/sky/orbit.h"
@@ -58,7 +58,7 @@ TEST(OrbitKeys, ASunThatStandsTooFarNorthIsAWarning) {
   };
   ASSERT_EQ(warnings("beta_deg = 90\ninclination_deg = 28.5\n").size(), 1U);
   EXPECT_TRUE(holds(warnings("beta_deg = 90\ninclination_deg = 28.5\n")[0], {"61.5", "23.44"}));
-  EXPECT_TRUE(warnings("beta_deg = 90\n").empty());  // an orbit that says nothing of its plane
+  EXPECT_TRUE(warnings("beta_deg = 90\n").empty());  // an orbit without a defined plane
   EXPECT_TRUE(warnings("beta_deg = 50\ninclination_deg = 28.5\nnoon_argument_deg = 0\n").size());
   EXPECT_TRUE(warnings("beta_deg = 45\ninclination_deg = 28.5\nnoon_argument_deg = -90\n").empty());
 }

@@ -37,7 +37,7 @@ TEST(Orbit, BayToEarthAtNoonHasTheSunBehindTheBellyAndTheEarthOverTheBay) {
 }
 
 TEST(Orbit, EveryAttitudeKeepsTheAngleBetweenSunAndEarth) {
-  // cos(angle from zenith to Sun) = cos(beta) cos(position), whatever way the spacecraft points.
+  // cos(angle from zenith to Sun) = cos(beta) cos(position), for any attitude.
   for (const std::string_view attitude : orbit_attitudes) {
     for (const double position : {0.0, 35.0, 90.0, 200.0}) {
       const OrbitState d = named_state(20.0, position, attitude);
@@ -50,7 +50,7 @@ TEST(Orbit, EveryAttitudeKeepsTheAngleBetweenSunAndEarth) {
 }
 
 TEST(Orbit, NoseForwardPutsTheMorningSunAheadOfNoonAndTheEveningSunBehind) {
-  // Past noon the Sun sinks behind the motion: with the nose forward that is aft, +x.
+  // After noon the Sun sinks opposite to the motion: with the nose forward that is aft, +x.
   EXPECT_GT(named_state(0.0, 45.0, "bay-to-space").sun.x, 0.5);
   EXPECT_LT(named_state(0.0, -45.0, "bay-to-space").sun.x, -0.5);
   EXPECT_GT(named_state(0.0, 45.0, "bay-to-earth").sun.x, 0.5);
@@ -106,9 +106,9 @@ TEST(Orbit, AnInertialAttitudeIsThePoseOfItsMomentKeptInSpace) {
 }
 
 TEST(Orbit, ThePeriodIsOneSiderealDayAtTheGeostationaryRadius) {
-  // a = 42164.17 km, one turn of the Earth in 86164.09 s.
+  // a = 42164.17 km, one revolution of the Earth in 86164.09 s.
   EXPECT_NEAR(orbit_period_s(42164.17e3 - base::earth_radius_m), 86164.09, 0.1);
-  // And time runs with the position, 360 deg in a period.
+  // Time is proportional to the position, 360 deg in a period.
   Orbit orbit;
   orbit.altitude_m = low_orbit_m;
   EXPECT_NEAR(orbit_state(orbit, -90.0).time_s, -orbit_period_s(low_orbit_m) / 4.0, 1e-9);

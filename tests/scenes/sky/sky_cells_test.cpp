@@ -19,7 +19,7 @@ double solid_angle_sr(const SkyCells& cells, std::size_t ring) {
          static_cast<double>(cells.sectors()[ring]);
 }
 
-// Of every cell, in the order of their numbers.
+// For every cell, in the order of their indices.
 std::vector<double> solid_angles_sr(const SkyCells& cells) {
   std::vector<double> all;
   for (std::size_t ring = 0; ring < cells.sectors().size(); ++ring) {
@@ -28,8 +28,8 @@ std::vector<double> solid_angles_sr(const SkyCells& cells) {
   return all;
 }
 
-// Caps from the Earth as seen from a million kilometres to the whole sphere, round axes in every
-// direction.
+// Caps from the Earth seen from a million kilometres to the whole sphere, about axes in all
+// directions.
 std::vector<SkyCells> many_cells() {
   std::vector<SkyCells> all;
   const Vec3 axes[] = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, -1, 0}, {1, 2, -3}, {-1e-9, 0, -1}};
@@ -64,7 +64,8 @@ TEST(SkyCells, WhatACellVisitsBelongsToItAndToTheCap) {
   }
 }
 
-// From edge to edge: the outermost stand at the rings' bounds, all of them within the cell.
+// From edge to edge: the outermost directions are at the rings' bounds, all of them within the
+// cell.
 TEST(SkyCells, TheLatticeReachesTheEdges) {
   for (const SkyCells& cells : many_cells()) {
     std::size_t cell = 0;
@@ -106,8 +107,8 @@ TEST(SkyCells, CellsAddUpToTheCap) {
   }
 }
 
-// Directions spread evenly over the cap fall into each cell as often as its solid angle says,
-// within four binomial standard errors (plus one direction, for cells that hold few).
+// Directions uniform over the cap fall into each cell in proportion to its solid angle, within four
+// binomial standard errors (plus one direction, for cells with few).
 TEST(SkyCells, EvenDirectionsFallIntoCellsBySolidAngle) {
   constexpr int count = 40000;
   for (const SkyCells& cells :
@@ -143,7 +144,7 @@ TEST(SkyCells, OutsideTheCapTheLastRingIsMeant) {
   }
 }
 
-// Each ring's number of sectors is rounded, by a half at most, to one or more; rings of less than
+// Each ring's number of sectors is rounded, by at most a half, to one or more; rings of less than
 // one sector are rare.
 TEST(SkyCells, AsManyAsWanted) {
   EXPECT_EQ(cells_of_disc({0, 0, 1}, 1.2, 2).count(), 2U);
@@ -159,9 +160,9 @@ TEST(SkyCells, AsManyAsWanted) {
   }
 }
 
-// Rings of equal width w with sectors that are as wide as high at their middle have equal sizes but
-// for the rounding of n to whole sectors: by a factor of (n + 1/2) / n, at n = pi sin(w/2) 2 / w of
-// about 3 round the poles.
+// Rings of equal width w with sectors as wide as high at their middle have equal sizes except for
+// rounding n to an integer: a factor of (n + 1/2) / n, with n = pi sin(w/2) 2 / w of about 3 at the
+// poles.
 TEST(SkyCells, CellsOfTheSphereAreNearlyOfOneSize) {
   for (const std::size_t wanted : {100, 192, 1000}) {
     const SkyCells cells = cells_of_sphere(wanted);
@@ -170,7 +171,7 @@ TEST(SkyCells, CellsOfTheSphereAreNearlyOfOneSize) {
   }
 }
 
-// From 425 km the ground below 60 deg off the middle spans some 7 of the 20 deg of the cap: equal
+// From 425 km the ground within 60 deg of the middle covers some 7 of the 20 deg of the cap: equal
 // steps of it are narrow rings at the limb.
 TEST(SkyCells, RingsNarrowTowardTheLimb) {
   const SkyCells cells = cells_of_disc({0, 0, 1}, std::asin(6371.0 / 6796.0), 48);

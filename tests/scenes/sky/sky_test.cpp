@@ -23,8 +23,8 @@ Scene scene_with_earth(const Vec3& to_earth, EarthModel model) {
   return scene;
 }
 
-// Illuminance of a plate by midpoint quadrature over the Earth's disc; smooth inside, so that 400 x
-// 800 points leave an error near 1e-5.
+// Illuminance of a plate by midpoint quadrature over the Earth's disc; smooth inside, so that the
+// error of 400 x 800 points is near 1e-5.
 double plate_illuminance(const Scene& scene, const Vec3& plate_normal) {
   const double half_angle = base::radians(scene.earth->half_angle_deg);
   const int rings = 400, spokes = 800;
@@ -52,8 +52,8 @@ TEST(Sky, UniformEarthGivesANadirPlatePiLTimesTheViewFactor) {
 
 TEST(Sky, LambertEarthMatchesTheTableOfTiltedPlates) {
   // E = albedo * E_sun * A(tilt, theta_s); A from independent integration at 425 km for a plate
-  // facing the nadir and for vertical plates on the Sun's side, across and away (four digits
-  // printed).
+  // that faces the nadir and for vertical plates toward the Sun, across and away (four printed
+  // digits).
   struct Row {
     double theta_deg, nadir, sun_side, across, away;
   };
@@ -86,9 +86,9 @@ TEST(Sky, SunSetsBehindTheLimbOverItsOwnDiameter) {
   };
   EXPECT_DOUBLE_EQ(share_at(1.01), 1.0);
   EXPECT_DOUBLE_EQ(share_at(-1.01), 0.0);
-  // The segment beyond a chord, of half its length c in radii, and what the limb bends away from
-  // it: a parabola of height y^2 r cot(half angle) / 2 along c, c^3 r cot / (3 pi) of the disc.
-  // What follows is smaller by r, 5e-3. Beyond a chord at half the radius: 1/3 - sqrt(3)/(4 pi).
+  // The segment beyond a chord of half length c in radii, and the curvature of the limb: a parabola
+  // of height y^2 r cot(half angle) / 2 along c, c^3 r cot / (3 pi) of the disc. The next terms are
+  // smaller by r, 5e-3. Beyond a chord at half the radius: 1/3 - sqrt(3)/(4 pi).
   const double bend = base::radians(scene.sun->angular_radius_deg) / std::tan(base::radians(limb)) /
                       (3.0 * base::pi);
   EXPECT_NEAR(share_at(0.0), 0.5 + bend, 5e-3 * bend);
@@ -110,7 +110,7 @@ TEST(Sky, EarthIsDarkAtMidnightAndLitAtNoon) {
   EXPECT_FALSE(earth_is_lit(scene));
   scene.sun->direction = Vec3(0, 0, -1);
   EXPECT_TRUE(earth_is_lit(scene));
-  // The cap in view reaches 20.4 deg from the nadir point: the last light goes at 110.4 deg.
+  // The visible cap extends 20.4 deg from the nadir point: the last light vanishes at 110.4 deg.
   const auto at = [&](double deg) {
     const double theta = base::radians(deg);
     scene.sun->direction = Vec3(std::sin(theta), 0.0, -std::cos(theta));

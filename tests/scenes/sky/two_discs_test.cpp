@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Sun's disc behind the Earth's, against sums over rings and directions drawn one by one.
+// The Sun's disc behind the Earth's, against sums over rings and sampled directions.
 #include "scenes/sky/two_discs.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 using base::pi;
 
-// Of the ring at angle theta about the centre of a, the half arc within b: by the law of cosines.
+// For a ring at angle theta about the centre of a: the half arc within b, by the law of cosines.
 double shared_by_rings(double a, double b, double separation) {
   constexpr int rings = 200'000;
   double sum = 0.0;
@@ -40,7 +40,7 @@ Scene eclipse(double sun_deg, double earth_deg, double separation_deg) {
 }
 
 TEST(TwoDiscs, ShareWhatTheirRingsAddUpTo) {
-  // Rings end at a rim with a square root: the midpoint rule is off by its width^1.5, 1e-8.
+  // A ring ends at a rim as a square root: the error of the midpoint rule is its width^1.5, 1e-8.
   struct Row {
     double a_deg, b_deg, separation_deg;
   };
@@ -71,8 +71,8 @@ TEST(TwoDiscs, OneWithinTheOtherIsSharedWhole) {
 }
 
 TEST(TwoDiscs, ASunAroundTheEarthKeepsItsRing) {
-  // 1 - (1 - cos 0.1 deg) / (1 - cos 0.2666 deg), also where no direction leads from one to the
-  // other.
+  // 1 - (1 - cos 0.1 deg) / (1 - cos 0.2666 deg), also if the centres coincide and the direction
+  // between them is undefined.
   const Scene scene = eclipse(0.2666, 0.1, 0.0);
   const double all = 1.0 - std::cos(base::radians(0.2666));
   EXPECT_NEAR(visible_sun_share(scene), 1.0 - (1.0 - std::cos(base::radians(0.1))) / all, 1e-9);
@@ -84,9 +84,9 @@ TEST(TwoDiscs, ASunAroundTheEarthKeepsItsRing) {
 }
 
 TEST(TwoDiscs, DirectionsAreSpreadOverWhatTheEarthLeaves) {
-  // Of directions drawn over the whole Sun those that miss the Earth are what SunDirections draw:
-  // the shares of both below a plane through the Sun's middle, and within 0.7 of its radius, agree
-  // within four standard errors of 40 000 draws, and so does how many miss.
+  // SunDirections samples like uniform directions on the whole Sun that miss the Earth. The shares
+  // below a plane through the Sun's middle and within 0.7 of its radius agree within four standard
+  // errors of 40 000 draws, and so does the share of misses.
   constexpr int draws = 40'000;
   for (const Scene& scene :
        {eclipse(0.2666, 69.6, 69.7), eclipse(20.0, 60.0, 65.0), eclipse(10.0, 4.0, 5.0)}) {

@@ -8,7 +8,7 @@
 namespace earthshine::scenes {
 namespace {
 
-// Greys, opaque unless `alpha` is given.
+// Grey values, opaque unless `alpha` is given.
 base::Pixels picture(int width, int height, const std::vector<int>& greys, int alpha = 255) {
   base::Pixels pixels{width, height, {}};
   for (const int grey : greys) {
@@ -19,9 +19,9 @@ base::Pixels picture(int width, int height, const std::vector<int>& greys, int a
 }
 
 TEST(Texture, ColoursAreDecodedFromSrgbAndDataIsNot) {
-  // IEC 61966-2-1: 128/255 encodes 0.2158605; the mean of what is decoded is not the decoded mean.
+  // IEC 61966-2-1: 128/255 encodes 0.2158605; decoding and averaging do not commute.
   EXPECT_NEAR(Texture(picture(1, 1, {128}), {}).at({0.5, 0.5}).g, 0.2158605, 1e-5);
-  // Below 0.04045 the code is a straight line: 10/255/12.92.
+  // Below 0.04045 the encoding is linear: 10/255/12.92.
   EXPECT_NEAR(Texture(picture(1, 1, {10}), {}).at({0.5, 0.5}).g, 0.0030353, 1e-5);
   TextureReading plain;
   plain.is_srgb = false;
@@ -49,7 +49,7 @@ TEST(Texture, PlacesLieBetweenTexelCentresAndWrapAsAsked) {
   EXPECT_NEAR(at(0.25), 0.0, 1e-9);
   EXPECT_NEAR(at(0.75), 1.0, 1e-9);
   EXPECT_NEAR(at(0.5), 0.5, 1e-9);
-  EXPECT_NEAR(at(0.0), 0.5, 1e-9);   // half way to the last texel of the one before
+  EXPECT_NEAR(at(0.0), 0.5, 1e-9);   // half way to the last texel of the previous period
   EXPECT_NEAR(at(7.75), 1.0, 1e-9);  // repeats
   EXPECT_NEAR(at(-0.25), 1.0, 1e-9);
   reading.wrap_u = Wrap::Clamp;
@@ -70,9 +70,9 @@ TEST(Texture, RowsRunDownAndWrapOnTheirOwn) {
   const Texture texture(picture(2, 2, {0, 51, 204, 255}), reading);
   EXPECT_NEAR(texture.at({0.25, 0.25}).r, 0.0, 1e-9);
   EXPECT_NEAR(texture.at({0.25, 0.75}).r, 0.8, 1e-9);
-  EXPECT_NEAR(texture.at({0.25, 0.375}).r, 0.2, 1e-9);  // a quarter of the way
-  EXPECT_NEAR(texture.at({0.25, -3.0}).r, 0.0, 1e-9);   // half of both if repeated
-  EXPECT_NEAR(texture.at({0.0, 9.0}).r, 0.9, 1e-9);     // along u it is
+  EXPECT_NEAR(texture.at({0.25, 0.375}).r, 0.2, 1e-9);  // a quarter of the distance
+  EXPECT_NEAR(texture.at({0.25, -3.0}).r, 0.0, 1e-9);   // would be half of both if repeated
+  EXPECT_NEAR(texture.at({0.0, 9.0}).r, 0.9, 1e-9);     // repeated along u
 }
 
 TEST(Texture, MasksAreAlphaOrElseGrey) {

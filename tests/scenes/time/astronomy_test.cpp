@@ -19,7 +19,7 @@ Vec3 of_angles(double right_ascension_deg, double declination_deg) {
   const double ra = base::radians(right_ascension_deg), dec = base::radians(declination_deg);
   return {std::cos(dec) * std::cos(ra), std::cos(dec) * std::sin(ra), std::sin(dec)};
 }
-// Along the true equator and equinox of date, as almanacs have them.
+// In the true equator and equinox of date, as in almanacs.
 Vec3 of_date(const Vec3& d, Instant t) {
   return glm::transpose(to_gcrs(Frame::Tod, t, {})) * glm::normalize(d);
 }
@@ -46,8 +46,8 @@ TEST(Astronomy, MoonStandsWhereTheAlmanacHasIt) {
   const Vec3 moon = moon_position_m(t);
   EXPECT_LT(apart_deg(of_date(moon, t), of_angles(134.688470, 13.768368)), 0.001);
   EXPECT_NEAR(glm::length(moon) / 1e3, 368409.7, 20.0);
-  // New Moon of the eclipse of 2024 April 8, 18:21 UT (US Naval Observatory): the same longitude as
-  // the Sun's. It gains 0.008 deg a minute.
+  // New Moon of the eclipse of 2024 April 8, 18:21 UT (US Naval Observatory): its longitude equals
+  // the Sun's and increases by 0.008 deg a minute relative to it.
   const Instant at = of_utc("2024-04-08T18:21");
   const double obliquity = base::radians(23.4385);
   const auto longitude_deg = [&](const Vec3& direction) {
@@ -57,9 +57,10 @@ TEST(Astronomy, MoonStandsWhereTheAlmanacHasIt) {
   EXPECT_NEAR(longitude_deg(moon_position_m(at)), longitude_deg(sun_direction(at)), 0.01);
 }
 
-// Vallado, "Fundamentals of astrodynamics and applications", 4th ed., examples 3-14 and 3-15: one
-// state of 2004 April 6, 07:51:28.386009 UTC in several frames, km. Left out here: polar motion,
-// 0.36" or 18 m at that distance. TEME and TOD stand there by the nutation of 1980, some 0.1" off.
+// Vallado, "Fundamentals of astrodynamics and applications", 4th ed., examples 3-14 and 3-15: a
+// state of 2004 April 6, 07:51:28.386009 UTC in several frames, km. Neglected here: polar motion,
+// 0.36" or 18 m at that distance. The book's TEME and TOD use the nutation of 1980, a difference of
+// some 0.1".
 TEST(Astronomy, FramesAgreeWithPublishedStates) {
   const Instant t = of_utc("2004-04-06T07:51:28.386009");
   const EarthClock clock{-0.4399619};
@@ -77,7 +78,7 @@ TEST(Astronomy, FramesAgreeWithPublishedStates) {
     EXPECT_LT(glm::length(to_gcrs(one.frame, t, clock) * (1e3 * one.km) - gcrf), one.allowed_m)
         << one.km.x;
   }
-  // Velocities: relative to the ground in ITRF, 3.225636520 km/s and so on.
+  // Velocities: relative to the ground in ITRF, 3.225636520 km/s etc.
   const State state = to_gcrs(State{1e3 * Vec3(-1033.4793830, 7901.2952754, 6380.3565958),
                                     1e3 * Vec3(-3.225636520, -2.872451450, 5.531924446)},
                               Frame::Itrf, t, clock);
@@ -122,7 +123,7 @@ TEST(Astronomy, WhatIsNoDateIsNotRead) {
 
 TEST(Astronomy, GroundPointOfTheZeroMeridian) {
   const Instant t = of_utc("2026-03-01T12:00:00");
-  // On the equator the ellipsoid's radius is 6378137 m.
+  // At the equator the ellipsoid's radius is 6378137 m.
   const Vec3 above = to_gcrs(Frame::Itrf, t, {}) * Vec3(6778137.0, 0.0, 0.0);
   const GroundPoint point = point_below(above, t, {});
   EXPECT_NEAR(point.latitude_deg, 0.0, 1e-9);

@@ -48,9 +48,9 @@ const Vec3 X(1, 0, 0), Y(0, 1, 0), Z(0, 0, 1);
 struct RightAngleTurn {
   Vec3 axis;
   double angle_deg;
-  Vec3 x, y;  // where the turn takes the axes x and y: z follows
+  Vec3 x, y;  // rotated axes x and y; z follows
 };
-// The 24 turns of a cube: none, about faces, edges and corners.
+// The 24 rotations of a cube: identity, about faces, edges and corners.
 const RightAngleTurn turns[] = {{Z, 0, X, Y},
                                 {X, 90, X, Z},
                                 {X, 180, X, -Y},
@@ -76,7 +76,7 @@ const RightAngleTurn turns[] = {{Z, 0, X, Y},
                                 {{-1, 1, 1}, 120, -Z, -X},
                                 {{-1, 1, 1}, -120, -Y, Z}};
 
-// The body's axes are the frame's after the turn, in every way that a file may say so.
+// The body's axes are the rotated frame axes, in every form that a file may use.
 TEST_F(AttitudeMessage, QuaternionsOfThe24RightAngleTurns) {
   for (const RightAngleTurn& turn : turns) {
     const double half = 0.5 * base::radians(turn.angle_deg);
@@ -105,7 +105,7 @@ TEST_F(AttitudeMessage, QuaternionsOfThe24RightAngleTurns) {
   }
 }
 
-// Components along axes turned by `angle` about one of them, the standard's M1, M2, M3.
+// Components along axes rotated by `angle` about one of them, the standard's M1, M2, M3.
 glm::dmat3 elementary(int axis, double angle_deg) {
   const double c = std::cos(base::radians(angle_deg)), s = std::sin(base::radians(angle_deg));
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;
@@ -137,7 +137,7 @@ TEST_F(AttitudeMessage, EulerAnglesAreMatricesMultiplied) {
   }
 }
 
-// 7.3 deg/s are 438 deg in the minute between the rows: 78 deg more by their angles alone.
+// 7.3 deg/s are 438 deg in the minute between the rows: 78 deg modulo full revolutions.
 TEST_F(AttitudeMessage, SpinGoesOnAtItsRateBetweenRows) {
   std::string text = aem("ATTITUDE_TYPE = SPIN\nATTITUDE_DIR = A2B\n",
                          "2026-03-01T12:00:00 120 35 10 7.3\n2026-03-01T12:01:00 120 35 88 7.3\n");
@@ -150,7 +150,7 @@ TEST_F(AttitudeMessage, SpinGoesOnAtItsRateBetweenRows) {
   const Vec3 x = begin * X, turned = later * X;
   EXPECT_NEAR(base::degrees(std::atan2(glm::dot(glm::cross(x, turned), axis), glm::dot(x, turned))),
               73.0, 1e-9);
-  // The node of the sequence lies at right ascension + 90 deg, the body's x 10 deg past it.
+  // The node of the sequence is at right ascension + 90 deg, the body's x 10 deg past it.
   const Vec3 node(-std::sin(ra), std::cos(ra), 0.0);
   EXPECT_NEAR(glm::dot(x, node), std::cos(base::radians(10.0)), 1e-12);
 }
@@ -158,7 +158,7 @@ TEST_F(AttitudeMessage, SpinGoesOnAtItsRateBetweenRows) {
 TEST_F(AttitudeMessage, WhereTheScalarIsIsNeverGuessed) {
   const std::string type = "ATTITUDE_TYPE = QUATERNION\nATTITUDE_DIR = A2B\n";
   const std::string silent = aem(type, "2026-03-01T12:00:00 1 0 0 0\n");
-  // Scalar first: no turn, z stays. Scalar last: half a turn about x.
+  // Scalar first: identity, z is unchanged. Scalar last: half a turn about x.
   EXPECT_TRUE(holds(refusal(silent),
                     {"a.aem:4", "do not say",
                      "scalar first: z at (0.000, 0.000, "
@@ -178,7 +178,7 @@ TEST_F(AttitudeMessage, WhereTheScalarIsIsNeverGuessed) {
 
 TEST_F(AttitudeMessage, BetweenRowsTheTurnIsEvenWhateverTheSigns) {
   const double s = std::sqrt(0.5);
-  // Half way between no turn and 90 deg about z, the second row with its signs turned over.
+  // Half way between the identity and 90 deg about z; the second row has reversed signs.
   const AttitudeHistory history = read(aem(
       "ATTITUDE_TYPE = QUATERNION\n",
       fmt::format("2026-03-01T12:00:00 0 0 0 1\n2026-03-01T12:01:00 0 0 {0} {0}\n", -s), "2.0"));

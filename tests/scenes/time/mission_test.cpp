@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trajectory and attitude against time as a scene has them.
+// Trajectory and attitude as functions of time in scenes.
 #include "scenes/time/mission.h"
 
 #include <cmath>
@@ -30,7 +30,7 @@ class MissionScene : public ::testing::Test {
   test::SceneFolder folder;
 };
 
-// Sun, orbit plane and position as the test's own vectors have them.
+// Sun, orbital plane and position from the test's own vectors.
 struct Sky {
   double beta, position;  // rad
 };
@@ -43,9 +43,10 @@ Sky sky_of(const Ellipse& circle, double s) {
           std::atan2(-glm::dot(sun, glm::cross(n, r)), glm::dot(sun, r))};
 }
 
-// Closed form of a circle: the Sun's disc of radius rho touches the Earth's, of half angle h, at
-// pi -+ acos(cos(h + rho) / cos beta) from orbit noon, and is gone at the same with h - rho. The Sun
-// moves 0.6 s worth of orbit in half a turn, so that the position is that of the time itself.
+// Closed form of a circular orbit: the Sun's disc of radius rho touches the Earth's, of half angle
+// h, at pi -+ acos(cos(h + rho) / cos beta) from orbit noon, and disappears with h - rho. In half a
+// revolution the Sun moves by 0.6 s of orbital motion, so that the position at the time itself
+// counts.
 TEST_F(MissionScene, EclipsesOfACircleAreWhereTheClosedFormHasThem) {
   const Scene scene = read();
   const Mission& mission = *mission_of(scene);
@@ -69,11 +70,11 @@ TEST_F(MissionScene, EclipsesOfACircleAreWhereTheClosedFormHasThem) {
     check(eclipse.umbra_end, h - rho, 1.0);
     check(eclipse.penumbra_end, h + rho, 1.0);
   }
-  // In a turn the Sun moves 0.065 deg, 1 s worth of orbit.
+  // In one revolution the Sun moves 0.065 deg, 1 s of orbital motion.
   EXPECT_NEAR(*eclipses[1].umbra_begin - *eclipses[0].umbra_begin, period + 1.0, 0.5);
 }
 
-// The share of the Sun that a scene moved there has agrees with those times.
+// The Sun's visible share in a scene moved to those times agrees with them.
 TEST_F(MissionScene, TheScenesOwnSunGoesOutAtThoseTimes) {
   Scene scene = read();
   const Mission mission = *mission_of(scene);
@@ -97,14 +98,14 @@ TEST_F(MissionScene, StandsOverTheGroundAndTheSunAsItsOwnVectorsSay) {
   EXPECT_NEAR(state.beta_deg, base::degrees(sky.beta), 0.003);  // the Sun from the spacecraft
   EXPECT_NEAR(std::remainder(state.position_deg - base::degrees(sky.position), 360.0), 0.0, 0.003);
   EXPECT_NEAR(state.distance_m, circle.semi_major_m, 0.01);
-  // Geocentric latitude asin(sin i sin u); the geodetic one is up to 0.2 deg more.
+  // Geocentric latitude asin(sin i sin u); the geodetic latitude is up to 0.2 deg larger.
   const double u = circle.mean_motion_rad_s() * 1234.0;
   const double latitude =
       base::degrees(std::asin(std::sin(base::radians(circle.inclination_deg)) * std::sin(u)));
   EXPECT_NEAR(state.below.latitude_deg, latitude, 0.35);
 }
 
-// With the local vertical known, each attitude puts the Earth where its name says.
+// For a known local vertical, each attitude has the Earth in its named direction.
 TEST_F(MissionScene, NamedAttitudesPointWhereTheySay) {
   const auto earth_of = [&](const std::string& attitude, double s) {
     Scene scene = read("attitude = \"" + attitude + "\"\n");
@@ -116,8 +117,8 @@ TEST_F(MissionScene, NamedAttitudesPointWhereTheySay) {
     EXPECT_LT(glm::length(earth_of("bay-to-space", s).earth->direction - Vec3(0, 0, -1)), 1e-12);
     EXPECT_LT(glm::length(earth_of("tail-down", s).earth->direction - Vec3(1, 0, 0)), 1e-12);
     EXPECT_LT(glm::length(earth_of("bay-to-sun", s).sun->direction - Vec3(0, 0, 1)), 1e-12);
-    // Inertial: as bay-to-earth at the start; then the Earth goes round the orbit's normal, the
-    // scene's y against it, and the Sun stays, but for the 1 deg of a day that it moves.
+    // Inertial: equals bay-to-earth at the start. Then the Earth moves about the orbit's normal,
+    // opposite to the scene's y, and the Sun is fixed except for its 1 deg per day.
     const Scene kept = earth_of("inertial", s);
     const double u = circle.mean_motion_rad_s() * s;
     EXPECT_LT(glm::length(kept.earth->direction - Vec3(std::sin(u), 0.0, std::cos(u))), 1e-6) << s;
@@ -125,7 +126,7 @@ TEST_F(MissionScene, NamedAttitudesPointWhereTheySay) {
   }
 }
 
-// No turn from GCRF: the scene's axes are those of the frame, through body_axes.
+// Identity with GCRF: the scene's axes are the frame's axes, through body_axes.
 TEST_F(MissionScene, AttitudeFilesTurnTheSkyByTheirBodyAxes) {
   folder.put("a.aem",
              "CCSDS_AEM_VERS = 2.0\nMETA_START\nREF_FRAME_A = GCRF\nREF_FRAME_B = SC_BODY\n"
@@ -153,7 +154,7 @@ TEST_F(MissionScene, MomentsGoFromStartToStop) {
   const TimeSpan& time = mission_of(scene)->time;
   EXPECT_EQ(time.count(), 19U);
   EXPECT_EQ(utc_text(time.at(18)), "2026-03-01T15:00:00Z");
-  // Without [time]: where the trajectory begins.
+  // Without [time]: at the start of the trajectory.
   folder.put("late.oem", oem_of(circle, epoch + 30.0, 60.0, 20));
   const Scene late = folder.read("format = 1\n[orbit]\ntrajectory = \"late.oem\"\n");
   EXPECT_EQ(utc_text(mission_of(late)->time.start), "2026-03-01T12:00:30Z");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Orbit ephemeris messages of two bodies, for tests.
+// Orbit ephemeris messages of two-body orbits, for tests.
 #pragma once
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ struct Ellipse {
   [[nodiscard]] double mean_motion_rad_s() const {
     return std::sqrt(scenes::earth_gm_m3_s2 / semi_major_m) / semi_major_m;
   }
-  // Seconds after the perigee, which lies at the ascending node; by Kepler's equation.
+  // Seconds after the perigee, which is at the ascending node; by Kepler's equation.
   [[nodiscard]] scenes::State at(double s) const {
     const double mean = mean_motion_rad_s() * s, e = eccentricity;
     double anomaly = mean;
@@ -56,8 +56,7 @@ inline std::string oem_meta(const std::string& start, const std::string& stop,
 inline constexpr const char* oem_head =
     "CCSDS_OEM_VERS = 2.0\nCREATION_DATE = 2026-01-01T00:00:00\nORIGINATOR = TEST\n";
 
-// States of the ellipse every `step_s` from `start` on, `count` of them. `start` has no digits
-// behind the second.
+// `count` states of the ellipse every `step_s` from `start` on. `start` has integer seconds.
 inline std::string oem_of(const Ellipse& ellipse, scenes::Instant start, double step_s, int count,
                           const std::string& more = "") {
   std::string rows, last;

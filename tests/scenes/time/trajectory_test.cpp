@@ -26,7 +26,7 @@ class TrajectoryFile : public ::testing::Test {
     return read_trajectory(folder.path() / "t.oem", {}, base::Location{"scene.toml", 3, 1},
                            warnings);
   }
-  // The refusal of the file, or of a state of it.
+  // The error for the file, or for a state of it.
   std::string refusal(const std::string& text, std::optional<Instant> at = std::nullopt) {
     try {
       const Trajectory read_one = read(text);
@@ -40,7 +40,7 @@ class TrajectoryFile : public ::testing::Test {
   std::vector<std::string> warnings;
 };
 
-// A row's rounding is 1e-6 m and 1e-9 m/s.
+// Rounding of a row: 1e-6 m and 1e-9 m/s.
 TEST_F(TrajectoryFile, GivesItsOwnStates) {
   const Ellipse ellipse;
   const Trajectory read_one = read(oem_of(ellipse, start, 240.0, 24));
@@ -51,11 +51,11 @@ TEST_F(TrajectoryFile, GivesItsOwnStates) {
   }
 }
 
-// The error of a polynomial through n + 1 nodes is (R w^(n+1) / (n+1)!) prod |t - node|: with a step
-// of h = 240 s = 0.271 rad of a circle of 6771 km, in the middle of four Hermite nodes
-// R h^8 (1/2 1/2 3/2 3/2)^2 / 8! = 0.0016 m, of eight Lagrange nodes R h^8 (1/2 3/2 5/2 7/2)^2 / 8! =
-// 0.21 m, of two Lagrange nodes R h^2 / 8 = 62 km. The velocity's is at most 8 and 2 times that a
-// step, w / h.
+// The error of a polynomial through n + 1 nodes is (R w^(n+1) / (n+1)!) prod |t - node|. With a
+// step of h = 240 s = 0.271 rad of a circle of 6771 km: in the middle of four Hermite nodes R h^8
+// (1/2 1/2 3/2 3/2)^2 / 8! = 0.0016 m, of eight Lagrange nodes R h^8 (1/2 3/2 5/2 7/2)^2 / 8! =
+// 0.21 m, of two Lagrange nodes R h^2 / 8 = 62 km. The error of the velocity is at most 8 and 2
+// times this, divided by the step: times w / h.
 TEST_F(TrajectoryFile, InterpolatesAsTheFileAsks) {
   const Ellipse circle;
   const struct {
@@ -86,8 +86,8 @@ TEST_F(TrajectoryFile, AnEllipseIsMetBetweenItsStates) {
   }
 }
 
-// The second segment goes on another ellipse: at the moment they share it holds, and just before it
-// the first one does. Nothing is taken from across.
+// The second segment follows another ellipse: it is valid at the common time, the first one just
+// before. Interpolation does not cross segments.
 TEST_F(TrajectoryFile, NothingIsInterpolatedAcrossSegments) {
   const Ellipse before, after{6771e3, 0.0, 51.6, 43.0};
   std::string text = oem_of(before, start, 60.0, 11);
@@ -105,7 +105,7 @@ TEST_F(TrajectoryFile, NothingIsInterpolatedAcrossSegments) {
                      "2026-03-01T12:00:00Z to 2026-03-01T12:10:00Z"}));
 }
 
-// XML and CIC's form give the states of the same message in KVN, to the bit.
+// XML and CIC's form give exactly the states of the same message in KVN.
 TEST_F(TrajectoryFile, OtherFormsHoldTheSameStates) {
   const Ellipse ellipse;
   const Trajectory kvn = read(oem_of(ellipse, start, 60.0, 8));

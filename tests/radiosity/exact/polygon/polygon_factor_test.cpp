@@ -51,7 +51,7 @@ struct Case {
   double computed, exact;
 };
 
-// Every case of rectangles in the view-factor library of the project's cases (mpmath, two routes).
+// All cases of rectangles in the view-factor library of the project's cases (mpmath, two methods).
 // C-11, C-13: parallel; C-14, C-15: perpendicular; C-16: inclined with a common edge (Howell).
 TEST(PolygonFactor, RectanglesMatchTheViewFactorLibrary) {
   const double cube = 1.0 / 16, fine = 1.0 / 24;
@@ -104,8 +104,8 @@ TEST(PolygonFactor, ThinGapsLoseOnlyWhatLeavesAtTheirRim) {
 }
 
 TEST(PolygonFactor, TouchingSquaresAtAnyAngleClosePrismsWithTheirCaps) {
-  // A prism over an isosceles triangle of angle phi at the common edge: from one flank, the other
-  // flank + the base + the two caps make 1. All pairs touch, along edges or at corners.
+  // A prism over an isosceles triangle with the angle phi at the common edge: from one flank, the
+  // other flank + the base + the two caps add up to 1. All pairs touch, along edges or at corners.
   for (const double phi_deg : {5.0, 30.0, 90.0, 150.0, 175.0}) {
     const double phi = base::radians(phi_deg), c = 1.0;
     const Vec3 apex(0.0), right(1, 0, 0), left(std::cos(phi), 0, std::sin(phi)), along(0, c, 0);
@@ -122,8 +122,8 @@ TEST(PolygonFactor, TouchingSquaresAtAnyAngleClosePrismsWithTheirCaps) {
 }
 
 TEST(PolygonFactor, PartsOfATwistedPairAddUpToTheWhole) {
-  // A_1 F_1(2) = sum over parts of both: the whole goes by its contour, the parts by contour,
-  // Lambert or area rules. Nothing here is parallel or perpendicular.
+  // A_1 F_1(2) = sum over parts of both: the whole uses the contour, the parts use contour, Lambert
+  // or area rules. Nothing is parallel or perpendicular.
   const Vec3 a(1.0, 0.1, 0.2), b(-0.2, 0.9, 0.1), c(0.1, 1.0, 0.3), d(1.1, -0.2, 0.25);
   const Vec3 from(0.1, 0.2, 0.0), to(0.2, -0.1, 0.9);
   const double whole = exchange_m2(quad(from, a, b), quad(to, c, d));
@@ -144,9 +144,9 @@ TEST(PolygonFactor, FarAndTinyPolygonsKeepTheirRelativeAccuracy) {
   // Point approximation cos cos A / (pi r^2): exact to (size / distance)^2 at 100 m.
   const ConvexPolygon floor = quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   EXPECT_NEAR(factor(floor, quad({0, 0, 100}, {0, 1, 0}, {1, 0, 0})) * base::pi * 1e4, 1.0, 1e-4);
-  // 1 mm at the foot of the axis of a 10 m square, h above it: twice the four quarters'
-  // differential factor, B-3 of Howell: F = 4/(2 pi) [2 X/sqrt(1+X^2) atan(X/sqrt(1+X^2))], X = 5 m
-  // / h.
+  // 1 mm at the foot of the axis of a 10 m square, at the distance h: twice the differential factor
+  // of the four quarters, B-3 of Howell: F = 4/(2 pi) [2 X/sqrt(1+X^2) atan(X/sqrt(1+X^2))], X = 5
+  // m / h.
   for (const double h : {0.01, 1.0, 100.0}) {
     const double x = 5.0 / h, s = std::sqrt(1.0 + x * x);
     const double exact = 4.0 / base::pi * (x / s) * std::atan(x / s);
@@ -155,8 +155,8 @@ TEST(PolygonFactor, FarAndTinyPolygonsKeepTheirRelativeAccuracy) {
     EXPECT_NEAR(factor(speck, wall) / exact, 1.0, 1e-5) << h;
     EXPECT_NEAR(factor(wall, speck) * 1e8 / exact, 1.0, 1e-5) << h;  // areas 100 m^2 and 1 mm^2
   }
-  // The speck lying on the wall's edge at a right angle sees it as half its world at most: C-14
-  // with l = 1 mm and the wall far wider is 1/2 to a relative (1 mm / 10 m) ln.
+  // The small square at the wall's edge, at a right angle, sees it in at most half of its view:
+  // C-14 with l = 1 mm and a much wider wall is 1/2 to a relative (1 mm / 10 m) ln.
   const ConvexPolygon foot = quad({0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0});
   const ConvexPolygon wall = quad({0, -5, 0}, {0, 10, 0}, {0, 0, 10});
   EXPECT_NEAR(factor(foot, wall), 0.5, 1e-4);
@@ -173,7 +173,7 @@ TEST(PolygonFactor, CoplanarAndAvertedPolygonsExchangeNothingAtAll) {
 }
 
 TEST(PolygonFactor, WhatLiesBehindThePlaneIsCutOff) {
-  // A wall through the floor's plane counts with its upper half alone: C-14, unit squares.
+  // A wall through the floor's plane counts with its upper half only: C-14, unit squares.
   const ConvexPolygon floor = quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   EXPECT_NEAR(factor(floor, quad({0, 0, -1}, {0, 1, 0}, {0, 0, 2})), 0.2000437760754, 1e-9);
 }
@@ -188,7 +188,8 @@ TEST(PolygonFactor, TrianglesWithTwinCornersCountAsTriangles) {
 }
 
 TEST(PolygonFactor, AMillionMetresFromTheOriginOnlyTheCoordinatesRounding) {
-  // 1e6 m hold 1.2e-10 m; the factor of touching unit squares changes by about as much.
+  // Near 1e6 m the spacing of doubles is 1.2e-10 m; the factor of touching unit squares changes by
+  // about as much.
   const Vec3 far(1e6, -1e6, 1e6);
   const ConvexPolygon floor = moved(quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), far);
   const ConvexPolygon wall = moved(quad({0, 0, 0}, {0, 1, 0}, {0, 0, 1}), far);

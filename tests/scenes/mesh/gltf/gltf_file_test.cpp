@@ -180,7 +180,7 @@ TEST_F(Gltf, SparsePositionsReplaceOthers) {
            "indices": {"bufferView": 1, "byteOffset": 2, "componentType": 5123},
            "values": {"bufferView": 0, "byteOffset": 0}}},
           {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}])";
-  // Corner 1 falls on corner 0: the first triangle is gone.
+  // Corner 1 coincides with corner 0: the first triangle vanishes.
   const Scene scene = read(parts);
   EXPECT_EQ(scene.objects.at(0).degenerate_count, 1U);
   EXPECT_DOUBLE_EQ(scene.objects.at(0).area_m2, 0.5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF's materials as Phong, its lamps and cameras as the scene's, its quantised numbers.
+// Conversion of glTF's materials to Phong, of its lamps and cameras, and of quantised numbers.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,8 +29,8 @@ TEST_F(GltfMaterials, MetalIsAnEvenLobeOverADiffusePart) {
   const Material mirror = material(
       R"({"pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.6, 0.4, 1], "roughnessFactor": 0}})");
   EXPECT_EQ(mirror.mirror, Rgb(0.8, 0.6, 0.4));
-  // The roughest, which is the format's default, has GGX's albedo and no cap: 0.3767 = (2 (1 - ln
-  // 2))^2, the integral of 1 / ((1 + x)(1 + y)) over both cosines squared.
+  // The roughest material, the format's default, has GGX's albedo without the cap: 0.3767 = (2 (1 -
+  // ln 2))^2, the integral of 1 / ((1 + x)(1 + y)) over both cosines squared.
   const Material rough = material("{}");
   EXPECT_NEAR(rough.diffuse.r, std::pow(2.0 * (1.0 - std::log(2.0)), 2), 1e-3);
   EXPECT_EQ(rough.specular, Rgb(0.0));
@@ -41,7 +41,7 @@ TEST_F(GltfMaterials, DielectricsReflectByTheirIndex) {
       R"("pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.4, "baseColorFactor": [0.5, 0.5, 0.5, 1]})";
   const PhongLobe lobe = phong_of_ggx(0.16);
   const Material usual = material("{" + pbr + "}");
-  // F0 = ((1.5 - 1) / (1.5 + 1))^2; the lobe's own diffuse part stays with the base colour.
+  // F0 = ((1.5 - 1) / (1.5 + 1))^2; the lobe's own diffuse part stays in the base colour.
   const double taken = 0.04 * lobe.albedo() / (lobe.albedo() + lobe.diffuse);
   EXPECT_NEAR(usual.diffuse.r, (1.0 - taken) * 0.5, 1e-12);
   EXPECT_NEAR(usual.specular.r, 0.04 * lobe.peak, 1e-12);
@@ -53,7 +53,7 @@ TEST_F(GltfMaterials, DielectricsReflectByTheirIndex) {
   EXPECT_NEAR(tinted.specular.r, 0.04 * lobe.peak, 1e-12);
   EXPECT_NEAR(tinted.specular.g, 0.02 * lobe.peak, 1e-12);
   EXPECT_NEAR(tinted.diffuse.b, (1.0 - taken) * 0.5, 1e-12);
-  // Wide and weak: left with the diffuse light.
+  // Wide and weak: becomes diffuse light.
   const Material rough = material(
       R"({"pbrMetallicRoughness": {"metallicFactor": 0, "baseColorFactor": [0.5, 0.5, 0.5, 1]}})");
   EXPECT_EQ(rough.diffuse, Rgb(0.5));
@@ -69,13 +69,13 @@ TEST_F(GltfMaterials, SpecularGlossinessEmissionAndUnlit) {
       "extensionsRequired": ["KHR_materials_pbrSpecularGlossiness"])");
   const Material& made = glossy.materials.at(0);
   const PhongLobe lobe = phong_of_ggx(0.0625);
-  // The lobe takes its share of F = 0.2 from the diffuse light. The facets' even part, F d, is there
-  // beyond what the diffuse light keeps for it.
+  // The lobe takes its share of F = 0.2 from the diffuse light. The facets' diffuse part, F d, is
+  // added as far as it exceeds the part that the diffuse light retains for it.
   const double in_lobe = lobe.albedo() / (lobe.albedo() + lobe.diffuse);
   const double even = std::max(0.0, 0.2 * lobe.diffuse - 0.4 * 0.2 * (1.0 - in_lobe));
   EXPECT_NEAR(made.diffuse.r, (1.0 - 0.2 * in_lobe) * 0.4 + even, 1e-12);
   EXPECT_NEAR(made.specular.r, 0.2 * lobe.peak, 1e-12);
-  // Black and as rough as can be: the even part alone.
+  // Black with maximum roughness: only the diffuse part.
   const Scene rough = read(R"({"extensions": {"KHR_materials_pbrSpecularGlossiness": {
       "diffuseFactor": [0, 0, 0, 1], "specularFactor": [0.25, 0.25, 0.25], "glossinessFactor": 0}}})");
   EXPECT_NEAR(rough.materials.at(0).diffuse.r, 0.25 * phong_of_ggx(1.0).diffuse, 1e-12);
@@ -119,8 +119,8 @@ TEST_F(GltfMaterials, TexturesAreTurnedCounterClockwiseAndMetalHasTheirMean) {
       read(R"({"pbrMetallicRoughness": {"metallicFactor": 0, )" + turned + "}}", more);
   ASSERT_TRUE(plain.materials.at(0).maps);
   const TextureMap& map = plain.materials.at(0).maps->diffuse;
-  // (u, v) = (0.1, 0.2) scaled is (0.2, 0.8); a quarter turn counter-clockwise, v running down,
-  // takes (1, 0) to (0, -1) and (0, 1) to (1, 0): (0.8, -0.2); shifted (1.3, 0.05).
+  // (u, v) = (0.1, 0.2) scaled is (0.2, 0.8); a quarter turn counter-clockwise, with v downward,
+  // maps (1, 0) to (0, -1) and (0, 1) to (1, 0): (0.8, -0.2); shifted (1.3, 0.05).
   const glm::dvec2 place = map.transform->apply({0.1, 0.2});
   EXPECT_NEAR(place.x, 1.3, 1e-12);
   EXPECT_NEAR(place.y, 0.05, 1e-12);
@@ -134,7 +134,7 @@ TEST_F(GltfMaterials, TexturesAreTurnedCounterClockwiseAndMetalHasTheirMean) {
       read(R"({"pbrMetallicRoughness": {"roughnessFactor": 0, )" + turned + "}}", more);
   EXPECT_NEAR(metal.materials.at(0).mirror.g, 0.5, 1e-4);
   // Means of 0.5 halve both factors: a^2 = 0.25^2; half metal, half a dielectric whose light is
-  // diffuse but for F0 = 0.04.
+  // diffuse except for F0 = 0.04.
   const Scene half =
       read(R"({"pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 0}}})", more);
   const Material& made = half.materials.at(0);
@@ -188,7 +188,7 @@ TEST_F(GltfMaterials, LampsAndCamerasComeWhenAskedFor) {
   EXPECT_EQ(lamp.name, "o.thing");
   EXPECT_EQ(lamp.group, "o.thing");
   EXPECT_EQ(lamp.intensity_cd, Rgb(200, 100, 0));
-  // On the triangle's corner: lifted off it by 0.16 mm (LiftLamps).
+  // At the triangle's corner: lifted by 0.16 mm (LiftLamps).
   EXPECT_NEAR(glm::length(lamp.position - Vec3(2, 4, 6)), 1.6e-4, 1e-10);
   EXPECT_NEAR(glm::length(lamp.axis - Vec3(0, 1, 0)), 0.0, 1e-12);
   EXPECT_NEAR(lamp.beam_deg, 2.0 * 0.2 * 180.0 / base::pi, 1e-9);

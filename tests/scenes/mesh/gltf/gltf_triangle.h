@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A glTF file of one triangle with whatever material, lamp or camera a test gives it.
+// A glTF file of one triangle with the material, lamp or camera of a test.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace earthshine::test {
 
-// A triangle with right angle at the origin and legs of 1, indices implied: three corners as floats
-// at 0, as normalised shorts (8 bytes apart) at 36, as plain bytes (4 apart) at 60.
+// A right triangle with its corner at the origin and legs of 1, implicit indices: three corners as
+// floats at 0, as normalised shorts (8 bytes apart) at 36, as plain bytes (4 apart) at 60.
 inline std::string triangle_buffer() {
   std::string bytes;
   const auto append = [&](auto value) {
@@ -27,7 +27,7 @@ class GltfTriangle : public ::testing::Test {
  protected:
   GltfTriangle() { folder_.put("a.bin", triangle_buffer()); }
 
-  // `more`: further members of the file; `node`: further ones of the triangle's node.
+  // `more`: further members of the file; `node`: further members of the triangle's node.
   scenes::Scene read(
       const std::string& material, const std::string& more = "", const std::string& node = "",
       const std::string& keys = "",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values of a glTF file that are not what the specification has.
+// Values of a glTF file that violate the specification.
 #include <algorithm>
 
 #include "tests/scenes/mesh/gltf/gltf_triangle.h"
@@ -63,7 +63,7 @@ TEST_F(GltfValues, ValuesOutOfRangeAreNamedOnceWithWhatIsDone) {
                               R"(, "camera": -1)");
   EXPECT_TRUE(named(textured, {"textures[0].sampler is 9", "from 0 to 0", "taken as none"}));
   EXPECT_TRUE(named(textured, {"samplers[0].wrapS is 3", "33071", "10497 is taken"}));
-  // What other extensions call their own is theirs; nor does a float's rounding matter.
+  // Contents of unknown extensions are not checked; float rounding is tolerated.
   const Scene other = read(R"({"extensions": {"XYZ_toon": {"shadeTexture": 3}}, "extras":
       {"alphaMode": 1}, "emissiveFactor": [1.0000001, 0, 0]})",
                            R"(, "extensions": {"XYZ_all": {"scene": "x", "materials": 2}})");
@@ -73,7 +73,7 @@ TEST_F(GltfValues, ValuesOutOfRangeAreNamedOnceWithWhatIsDone) {
   const Scene foreign = read(R"({"extensions": {"XYZ_toon": {"KHR_texture_transform": 5}}})");
   ASSERT_EQ(foreign.warnings.size(), 1U);
   EXPECT_TRUE(named(foreign, {"not used", "XYZ_toon (1)"}));
-  // 2^32 is not entry 0.
+  // 2^32 must not become entry 0.
   const Scene plain =
       read(R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 4294967296}}})",
            R"(, "textures": [{"source": 0}], "images": [{"uri": "none.png"}])");

@@ -18,7 +18,7 @@ TEST(GltfWriter, WhatIsWrittenIsReadWithTheSceneStoodUpright) {
       read(make_glb("bay", std::vector{triangle("liner", 1), triangle("dish", 5)}, {}));
   ASSERT_EQ(mesh.polygons.size(), 2U);
   ASSERT_EQ(mesh.vertices.size(), 6U);
-  // z up becomes y up: (x, y, z) is written as it is, and turned to (x, z, -y) by the root.
+  // z up becomes y up: (x, y, z) is written unchanged; the root node rotates it to (x, z, -y).
   EXPECT_EQ(mesh.vertices[0], Vec3(1, 3, -2));
   EXPECT_EQ(mesh.vertices[5], Vec3(5, 3, -3));
   const auto has = [&](const char* name) {
@@ -32,7 +32,7 @@ TEST(GltfWriter, ATurnKeepsTheFrontInFront) {
   const Mesh mesh = read(make_glb("bay", std::vector{triangle("liner", 0)}, {}));
   const Vec3 cross =
       glm::cross(mesh.vertices[1] - mesh.vertices[0], mesh.vertices[2] - mesh.vertices[0]);
-  EXPECT_EQ(cross, Vec3(0, 1, 0));  // the front was up, along z
+  EXPECT_EQ(cross, Vec3(0, 1, 0));  // the front faced up, along z
 }
 
 TEST(GltfWriter, PartsWithoutTrianglesAndEmptyScenesAreSoundToo) {
