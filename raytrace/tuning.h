@@ -122,7 +122,7 @@ inline constexpr double dimmest_share = 0.05;
 // Stated deviation of a pixel, relative to its luminance, from which on it gets more samples after
 // the error is reached, in so many rounds, each for at most that share of the cost so far. A smaller
 // deviation costs more, a larger one leaves single dark or bright pixels.
-inline constexpr double visible_deviation = 0.3, speck_cost = 0.1;
+inline constexpr double visible_deviation = 0.5, speck_cost = 0.05;
 inline constexpr std::uint32_t speck_rounds = 2;
 // Least number of pixels with one sample count for a common error estimate; with fewer, all pixels
 // are used.

@@ -55,14 +55,9 @@ Frame drawn(const scenes::Scene& scene, bool per_light, std::uint64_t seed = 1) 
   return render(prepared, prepared.solve(solve), looking_up(), options);
 }
 
-<<<<<<< HEAD
-// Every layer is rounded a few times on its way (radiosity, its sum over rays, the pixel), by
-// 2^-24 of itself, all to one side at worst. The residual is a difference of terms that are as
-// large as the light, in two halves of four paths: three times as much.
-=======
 // Every layer is rounded a few times (radiosity, its sum over rays, the pixel), by 2^-24 of its
-// value, in the worst case in the same direction.
->>>>>>> part-X1
+// value, in the worst case in the same direction. The residual is a difference of terms that are as
+// large as the light, in two halves of four paths: three times as much.
 void expect_same_sum(const scenes::Scene& scene, std::size_t cells, bool lit_everywhere) {
   const Frame whole = drawn(scene, false);
   const Frame parts = drawn(tests::in_parts(scene, cells), true);

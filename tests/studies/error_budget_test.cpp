@@ -43,15 +43,9 @@ NoisyPicture traced_room(std::uint64_t seed) {
 }
 
 TEST(ErrorBudget, WhatIsAskedForIsStatedAndTrue) {
-<<<<<<< HEAD
-  // Against two independent path-traced pictures. Twelve pictures, three errors asked for: each
-  // states no more than was asked, and nine of ten are no further off the truth than their bound.
-  const ReferencePair truth{traced_room(11), traced_room(12)};
-=======
   // Against two independent path-traced pictures. Twelve pictures, three wanted errors: each
   // picture states at most the wanted error, and nine of ten have a true error within their bound.
-  const ReferencePair truth{traced(11), traced(12)};
->>>>>>> part-X1
+  const ReferencePair truth{traced_room(11), traced_room(12)};
   int within = 0, all = 0;
   for (const double asked : {0.1, 0.05, 0.03}) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {

@@ -151,7 +151,7 @@ def material_text(material):
 # Objects whose mesh is a coarse polygon approximation of a round body: smooth_deg, the angle below
 # which an edge is round (the arm's 12 sides turn by 30), and round_deg, the largest angle between
 # faces of the refined mesh.
-ROUND_DEG = {"tss": (30, 3), "tss-deployer": (30, 5), "canisters": (30, 5), "arm": (35, 5), "ku-antenna": (30, 5)}
+ROUND_DEG = {"tss": (30, 1), "tss-deployer": (30, 5), "canisters": (30, 5), "arm": (35, 5), "ku-antenna": (30, 5)}
 
 
 def object_text(entry):

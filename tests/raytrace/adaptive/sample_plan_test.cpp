@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "raytrace/tuning.h"
+
 namespace earthshine::raytrace {
 namespace {
 
@@ -140,6 +142,45 @@ TEST(SamplePlan, SamplesThatScatterLessTogetherNeedFewer) {
   const SamplePlan next = plan(sums, 0.0, 3.0 * 16.0 * 2.0 * edge * edge / 2);
   EXPECT_EQ(next.camera[sums.window.index(8, 2)], 64U);
   EXPECT_EQ(next.camera[sums.window.index(8, 13)], 1024U);
+}
+
+// A deviation is visible against the pixel's own luminance, or against dimmest_share of the mean in
+// darker pixels. Beyond visible_deviation of that, pixels get four times their samples, the worst
+// first and no more than the cost allows; the others get none.
+TEST(SamplePlan, SpecksAreDeviationsThatAPixelsLightDoesNotHide) {
+  constexpr double n = 16.0, dark = 0.2;
+  struct Row {
+    int x;
+    double luminance, deviation;  // of the mean, over the threshold
+    bool is_speck;
+  };
+  const Row rows[] = {{1, 1.0, 0.9, false}, {3, 1.0, 1.1, true}, {5, dark, 0.9, false},
+                      {7, dark, 1.1, true}, {9, 0.0, 0.9, false}, {11, 0.0, 1.2, true}};
+  PixelSums sums = quiet(16);
+  for (const Row& row : rows) {
+    const std::size_t p = sums.window.index(row.x, 8);
+    sums.radiance[p] = glm::vec3(float(n * row.luminance));
+    sums.luminance[p] = n * row.luminance;
+  }
+  double mean = 0.0;
+  for (const double sum : sums.luminance) mean += sum / n / (edge * edge);
+  for (const Row& row : rows) {
+    const std::size_t p = sums.window.index(row.x, 8);
+    const double against = std::max(row.luminance, tuning::dimmest_share * mean);
+    const double deviation = row.deviation * tuning::visible_deviation * against;
+    sums.luminance2[p] = n * row.luminance * row.luminance + n * deviation * deviation * (n - 1.0);
+    sums.half_difference[p] = deviation * n;
+  }
+  const SamplePlanner planner(sums, nullptr, {});
+  const SamplePlan all = planner.plan_for_specks(no_limit);
+  for (const Row& row : rows) {
+    EXPECT_EQ(all.camera[sums.window.index(row.x, 8)], row.is_speck ? 64U : 16U) << row.x;
+  }
+  EXPECT_EQ(std::ranges::count(all.camera, 16U), edge * edge - 3);
+  EXPECT_EQ(all.cost, 3.0 * 3.0 * 16.0 * 2.0);  // three pixels, three times 16 samples with a ray
+  const SamplePlan worst = planner.plan_for_specks(1.0);
+  EXPECT_EQ(worst.camera[sums.window.index(11, 8)], 64U);
+  EXPECT_EQ(std::ranges::count(worst.camera, 16U), edge * edge - 1);
 }
 
 }  // namespace
