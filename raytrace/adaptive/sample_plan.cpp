@@ -256,7 +256,8 @@ SamplePlan SamplePlanner::plan_for_specks(double most_cost) const {
     if (stated_.shows[p] == Shows::Nothing) continue;
     double square = 0.0;
     for (const float part : stated_.squared[p]) square += double(part);
-    const double against = std::max(double(stated_.luminance[p]), floor);
+    const double shown = double(stated_.luminance[p]) + double(stated_.source[p]);
+    const double against = std::max(shown, floor);
     const double visibility = square / (against * against);
     if (visibility > tuning::visible_deviation * tuning::visible_deviation) {
       specks.push_back({p, square, visibility});
