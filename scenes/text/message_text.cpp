@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/suggest.h"
 
 namespace earthshine::scenes {
 
@@ -43,11 +44,7 @@ std::string listed(std::span<const std::string> words) {
 
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
   if (word.size() > 200) return {};  // the distance costs length times length
-  std::string nearest = base::nearest_word(word, candidates);
-  // "fov" for "fov_deg" is far by edits but means it.
-  for (const std::string& candidate : candidates) {
-    if (nearest.empty() && word.size() > 2 && candidate.starts_with(word)) nearest = candidate;
-  }
+  const std::string nearest = base::nearest_word(word, candidates);
   return nearest.empty() ? std::string() : fmt::format("Did you mean {}?", in_quotes(nearest));
 }
 
