@@ -55,7 +55,7 @@ struct SeriesLaw {
   std::string method, series;
   std::string spent;  // what x counts: "patches", "camera samples a pixel"
   std::vector<ErrorAt> points;
-  std::optional<PowerLaw> law;
+  std::optional<PowerLaw> law;  // where it holds
 };
 
 // The cheapest settings measured for a wanted error, by CPU seconds.
