@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program's two voices: results on standard output, everything else on standard error. What
 // names of files and things could do to a terminal is taken out here (base/error.h), once for all.
+// On a terminal long lines are broken between words.
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <csignal>
 #include <cstddef>
 #include <string>
@@ -16,6 +16,12 @@ namespace earthshine::app {
 // pipe: a result that did not arrive is not done.
 void print(std::string_view text);
 
+// Lines of more than `columns` characters, broken at blanks; what follows is indented two more.
+[[nodiscard]] std::string wrapped_at_words(std::string_view text, std::size_t columns);
+
+// Columns of the terminal that a stream goes to; 0: it goes to none.
+[[nodiscard]] std::size_t terminal_columns(int stream);
+
 // One line on standard error. Work goes on where nobody listens any more.
 void note(std::string_view line);
 
@@ -26,6 +32,12 @@ void note_in_handler(std::string_view line) noexcept;
 // For a process that is one of several and not their speaker: neither prints nor notes.
 void be_silent(bool silent);
 
+// Whether notes go to a terminal, and not to a file.
+[[nodiscard]] bool notes_are_on_a_terminal();
+
+// The line at the foot of the terminal, which notes and results take the place of; "" wipes it.
+void show_status(std::string_view line);
+
 // Whether a note did not arrive, for the exit code: what was not said is not done.
 [[nodiscard]] bool lost_a_note();
 
@@ -34,24 +46,6 @@ void be_silent(bool silent);
 
 // "812", "25.3 k", "1.2 M", "3.4 G".
 [[nodiscard]] std::string short_count(double count);
-
-// A line on standard error with percent, time gone and time to go, redrawn at most ten times a
-// second and wiped at the end. Silent unless standard error is a terminal.
-class Progress {
- public:
-  Progress(const std::string& label, bool quiet);
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-
-  void operator()(std::size_t done, std::size_t total);
-
- private:
-  using Clock = std::chrono::steady_clock;
-  std::string label_;
-  bool shown_;
-  Clock::time_point start_ = Clock::now(), last_{};
-};
 
 // Of Ctrl-C, of a queue that wants its machine back, and of a terminal that closes.
 inline constexpr std::array ending_signals{SIGINT, SIGTERM, SIGHUP};

@@ -180,7 +180,8 @@ std::string Help::make_help(const CLI::App* parser, std::string, CLI::AppFormatM
   if (!commands.empty()) text += "\nCommands:\n" + commands;
   return text + "\n" +
          wrapped(
-             "Exit codes: 0 done; 1 the work failed; 2 the call or a file is wrong; 3 done in part: "
+             "Exit codes: 0 done; 1 the work failed; 2 the call or a file is wrong; 3 done in "
+             "part: "
              "the wanted error was not reached, or a camera was skipped.",
              0) +
          "\n";

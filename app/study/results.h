@@ -153,6 +153,8 @@ struct StudyResults {
   Json settings = Json::object(), provenance = Json::object();
   std::vector<StudyCost> costs;
   std::vector<std::string> notes;
+  // Cameras inside a body; the notes say so in study.json.
+  std::vector<std::string> skipped = {};
 };
 
 // Of the cameras and targets that have results at two places or more.

@@ -15,6 +15,9 @@ namespace earthshine::app {
 
 // In the order of StudyPart: all places of the first lamp setting, then those of the second. Each
 // with that number of its scene.
+// Units of Work::Conditions (app/progress.h).
+[[nodiscard]] double units_of_conditions(const StudyPart& part, const StudyCamera& camera);
+
 [[nodiscard]] std::vector<ConditionEntry> conditions_of(const StudyPart& part, std::size_t scene);
 
 // What was found of the scene's targets in each condition, in their order; none where a condition

@@ -33,6 +33,10 @@ class Help(program.Case):
         # One name with two meanings: output here, input there.
         self.assertRegex(self.done("render", "--help"), r"(?s)Output:.*--cctv FILE")
 
+    def test_options_that_do_nothing_are_not_offered(self):
+        self.says(self.refused("inspect", "box.toml", "--error", "0.1"), 'unknown option "--error"')
+        self.says(self.done("report", "--help"), "[OPTIONS] DIR\n", "  DIR  ")
+
     def test_version(self):
         self.assertRegex(self.done("--version"), r"^earthshine \d+\.\d+\.\d+\n$")
 
