@@ -33,9 +33,9 @@ struct Law {
 };
 constexpr std::array<Law, 10> laws = {{{Work::Read, "read", 0.2, 0.0, true},
                                        {Work::Pilot, "pilot", 1.0, 2.0, true},
-                                       {Work::Solve, "solve", 0.2, 2.5e-4, true},
+                                       {Work::Solve, "solve", 0.2, 5e-5, true},
                                        {Work::StudySolve, "study solve", 1.0, 2.5e-3, true},
-                                       {Work::Picture, "picture", 2.5, 6e-5, false},
+                                       {Work::Picture, "picture", 1.0, 3e-4, false},
                                        {Work::StudyPicture, "study picture", 5.0, 2e-4, false},
                                        {Work::Paths, "paths", 0.1, 1e-6, true},
                                        {Work::Conditions, "conditions", 0.5, 1e-6, true},
@@ -134,7 +134,7 @@ Progress::Listener Progress::begin(const std::string& label, Work work, double u
   draw();
   return [this, stage = stage_](std::size_t done, std::size_t total) {
     const std::lock_guard guard(mutex_);
-    if (stage == stage_) forecast_.advance(done, total, now());
+    if (stage == stage_) forecast_.advance(done, total);
   };
 }
 

@@ -2,17 +2,13 @@
 #include "base/forecast.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace earthshine::base {
 namespace {
 
 constexpr double least_s = 1e-3;
-// A stage that takes longer than expected and cannot say why is taken to be at four fifths.
-constexpr double late = 1.25;
-// A picture's seconds over those of its first samples, about which it reports nothing: 2.7 to 8 in
-// the seven views of scenes/library/sts46/night-lamps.toml at 128 x 128.
-constexpr double whole_over_first = 4.0;
+// A stage past its expected time, without steady reports, is taken to be halfway.
+constexpr double late = 2.0;
 // The end is shown by the result.
 constexpr double most_shown = 0.99;
 
@@ -34,15 +30,13 @@ void Forecast::begin(const Stage& stage, double now) {
   current_ = stage;
   under_way_ = true;
   began_ = now;
-  known_since_ = -1.0;
   done_ = total_ = 0;
 }
 
-void Forecast::advance(std::size_t done, std::size_t total, double now) {
+void Forecast::advance(std::size_t done, std::size_t total) {
   if (!under_way_) return;
   done_ = std::min(done, total);
   total_ = total;
-  if (total > 1 && known_since_ < 0.0) known_since_ = now - began_;
 }
 
 void Forecast::end(double now) {
@@ -62,16 +56,9 @@ double Forecast::expected(const Stage& stage, double slowdown) const {
 
 double Forecast::seconds_of_current(double now, double slowdown) const {
   const double gone = std::max(least_s, now - began_);
-  double seconds = std::max(expected(current_, slowdown), late * gone);
-  if (total_ <= 1 || done_ == 0) return seconds;
-  const double share = static_cast<double>(done_) / static_cast<double>(total_);
-  const double by_share = gone / share;
-  if (current_.steady) return by_share;
-  // The share is trusted as far as it has come.
-  if (!measured_.contains(current_.kind)) {
-    seconds = std::max(whole_over_first * known_since_, gone);
-  }
-  return std::exp(share * std::log(by_share) + (1.0 - share) * std::log(seconds));
+  const double seconds = std::max(expected(current_, slowdown), late * gone);
+  if (!current_.steady || total_ <= 1 || done_ == 0) return seconds;
+  return gone * static_cast<double>(total_) / static_cast<double>(done_);
 }
 
 Forecast::State Forecast::at(double now, double slowdown, double most) {

@@ -22,8 +22,8 @@ class Forecast {
     // Stages of one kind take seconds in proportion to those expected; "": as many as expected.
     std::string kind;
     double seconds = 0.0;  // expected
-    // Whether its reports are in proportion to time. Others report a total of at most 1 until they
-    // know how much there is to do, and their first shares are rough.
+    // Whether its reports are in proportion to time; else they are ignored: a picture to an error
+    // knows only the samples of the round under way.
     bool steady = true;
   };
   struct State {
@@ -37,7 +37,7 @@ class Forecast {
   void drop_all();
   // Ends the stage under way. Takes the place of a stage to come of the same kind, if there is one.
   void begin(const Stage& stage, double now);
-  void advance(std::size_t done, std::size_t total, double now);
+  void advance(std::size_t done, std::size_t total);
   void end(double now);
 
   // slowdown: of the machine by others, for stages whose kind was not measured yet. most: the
@@ -56,7 +56,7 @@ class Forecast {
   std::map<std::string, Measured> measured_;
   Stage current_;
   bool under_way_ = false;
-  double began_ = 0.0, known_since_ = -1.0;  // since when the total is known, from began_
+  double began_ = 0.0;
   std::size_t done_ = 0, total_ = 0;
   double shown_ = 0.0;
 };

@@ -9,7 +9,7 @@ namespace {
 TEST(Forecast, StepsOfASteadyStageGiveTheRestExactly) {
   Forecast forecast;
   forecast.begin({"solve", 100.0}, 0.0);  // 100 s were expected, and it takes 20 s
-  forecast.advance(1, 10, 2.0);
+  forecast.advance(1, 10);
   const Forecast::State state = forecast.at(2.0);
   EXPECT_NEAR(state.share, 0.1, 1e-12);
   EXPECT_NEAR(state.seconds_to_go, 18.0, 1e-12);
@@ -22,6 +22,16 @@ TEST(Forecast, FinishedStagesCorrectThoseOfTheirKind) {
   forecast.begin({"picture", 10.0}, 2.0);  // the first took 2 s: four of 2 s are left
   EXPECT_NEAR(forecast.at(2.0).seconds_to_go, 8.0, 1e-9);
   EXPECT_NEAR(forecast.at(2.0).share, 0.2, 1e-9);
+}
+
+// A picture to an error reports the end of each of its rounds as the end of all that is known.
+TEST(Forecast, ReportsOfRoundsDoNotHurryAPicture) {
+  Forecast forecast;
+  forecast.begin({"picture", 40.0, false}, 0.0);
+  forecast.advance(10, 10);
+  EXPECT_NEAR(forecast.at(4.0).seconds_to_go, 36.0, 1e-9);
+  EXPECT_NEAR(forecast.at(4.0).share, 0.1, 1e-9);
+  EXPECT_NEAR(forecast.at(60.0).seconds_to_go, 60.0, 1e-9);  // late: as long again
 }
 
 // Whatever the stages do: a call of stages that take far longer, or shorter, than expected, or that
@@ -40,7 +50,7 @@ TEST(Forecast, TheShareNeverFalls) {
     forecast.begin({seconds > 100.0 ? "unannounced" : "short", 1.0, seconds < 100.0}, now);
     for (int k = 0; k < 50; ++k) {
       now += seconds / 50.0;
-      if (seconds < 100.0) forecast.advance(static_cast<std::size_t>(k), 50, now);
+      if (seconds < 100.0) forecast.advance(static_cast<std::size_t>(k), 50);
       look();
     }
   }
