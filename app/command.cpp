@@ -149,6 +149,34 @@ void check_input(LoadedScene& loaded, const scenes::RayQuery& query, const scene
   }
 }
 
+std::vector<const scenes::Camera*> skip_hidden_cameras(const scenes::Scene& scene,
+                                                       const scenes::RayQuery& query,
+                                                       std::vector<const scenes::Camera*>& cameras,
+                                                       bool quiet) {
+  std::vector<const scenes::Camera*> hidden, seeing;
+  std::vector<std::string> reasons;
+  for (const scenes::Camera* camera : cameras) {
+    try {
+      raytrace::check_camera(scene, query, *camera);
+      seeing.push_back(camera);
+    } catch (const Error& error) {
+      if (hidden.size() + 1 == cameras.size()) throw;
+      hidden.push_back(camera);
+      reasons.emplace_back(error.what());
+    }
+  }
+  for (const std::string& reason : reasons) {
+    if (!quiet) note("skipped: " + reason);
+  }
+  cameras = std::move(seeing);
+  return hidden;
+}
+
+void check_skipped(const std::vector<std::string>& skipped) {
+  if (skipped.empty()) return;
+  throw StoppedShort("cameras inside a body were skipped: " + scenes::listed(skipped));
+}
+
 bool SceneInput::wants_error() const {
   return std::any_of(overrides.begin(), overrides.end(), [](const std::string& setting) {
     return setting.starts_with("quality.error=");

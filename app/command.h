@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "app/json.h"
+#include "app/progress.h"
 #include "radiosity/solution.h"
 #include "scenes/effects/culling.h"
 #include "scenes/effects/world.h"
@@ -35,6 +36,8 @@ struct Common {
   bool quiet = false;
   std::uint64_t max_memory_bytes = 0;  // 0: the free memory
   std::vector<std::string> arguments;  // the whole call, from the command on
+  // Of the whole call; shows nothing by default.
+  std::shared_ptr<Progress> progress = std::make_shared<Progress>(true);
 };
 
 // The arguments without options that only affect execution: --part, --wait, --threads,
@@ -86,7 +89,8 @@ struct SceneInput {
   [[nodiscard]] bool wants_error() const;
 };
 
-// Everything was computed and written, but not to the wanted error: exit code 3.
+// What could be done is done and written: not to the error that the call wants, or not for all of
+// its cameras. Exit code 3.
 struct StoppedShort : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -128,7 +132,15 @@ void decide_effects(LoadedScene& loaded, const WantedEffects& wanted);
 void check_input(LoadedScene& loaded, const scenes::RayQuery& query, const scenes::SceneUse& use,
                  bool quiet, bool draws = false);
 
-// Both throw base::Error (Input) without such a camera. named_at: place in a file or option.
+// Removes those of several cameras that are inside a body, and returns them; a note names each
+// unless `quiet`. Throws base::Error (Input) if none would be left.
+[[nodiscard]] std::vector<const scenes::Camera*> skip_hidden_cameras(
+    const scenes::Scene& scene, const scenes::RayQuery& query,
+    std::vector<const scenes::Camera*>& cameras, bool quiet);
+// Throws StoppedShort unless `skipped`, names, is empty.
+void check_skipped(const std::vector<std::string>& skipped);
+
+// Both throw base::Error (Input) where there is none. named_at: where a file or an option names it.
 [[nodiscard]] const scenes::Camera& first_camera(const scenes::Scene& scene);
 [[nodiscard]] const scenes::Camera& choose_camera(const scenes::Scene& scene,
                                                   const std::string& name,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/suggest.h"
 
 namespace earthshine::app {
 namespace {
@@ -22,21 +23,21 @@ struct Group {
 };
 const std::array<Group, 7>& groups() {
   static const std::array<Group, 7> all = {
-      {{"What is read", {"set", "scene", "solution", "preset", "fields", "frame", "frames"}},
-       {"What is looked at",
+      {{"Input", {"set", "scene", "solution", "preset", "fields", "frame", "frames"}},
+       {"Camera",
         {"camera", "size", "crop", "only-pixel", "over", "over-style", "over-alpha", "positions",
          "at", "wanted", "iris", "lights", "probe", "cctv", "f-number", "fov"}},
-       {"How exactly",
+       {"Accuracy",
         {"error", "no-error", "time-limit", "indirect", "no-caustics", "distributed-lights",
          "distributed-over", "all-effects", "paths", "noise", "raw", "reference-factor", "method",
          "off"}},
-       {"In parts, on many machines", {"part", "wait", "ranks"}},
+       {"Parallel runs", {"part", "wait", "ranks"}},
        {"Options", {}},
-       {"What is written",
+       {"Output",
         {"output", "png", "range", "report", "aov", "per-light", "timings", "json", "csv", "glb",
          "twin", "target-resels", "stages", "list", "describe", "plain", "dry-run", "exposure",
          "curve"}},
-       {"As with every command", {"threads", "seed", "max-memory", "quiet", "help", "version"}}}};
+       {"General", {"threads", "seed", "max-memory", "quiet", "help", "version"}}}};
   return all;
 }
 
@@ -104,7 +105,10 @@ std::string unknown_word(const CLI::App& program) {
       for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
     }
     const std::string plain = word.substr(0, word.find('='));
-    return fmt::format("unknown option \"{}\"{}", plain, did_you_mean(plain, known));
+    const std::string meant = did_you_mean(plain, known);
+    return fmt::format(
+        "unknown option \"{}\"{}", plain,
+        meant.empty() ? fmt::format("; there are {}", fmt::join(known, ", ")) : meant);
   }
   const std::vector<std::string> known = commands_of(parser);
   const std::vector<const CLI::Option*> options = parser.get_options();
@@ -176,8 +180,9 @@ std::string Help::make_help(const CLI::App* parser, std::string, CLI::AppFormatM
   if (!commands.empty()) text += "\nCommands:\n" + commands;
   return text + "\n" +
          wrapped(
-             "Exit codes: 0 done; 1 the work failed; 2 the call or a file is wrong; 3 done, but "
-             "short of the error that the call asked for.",
+             "Exit codes: 0 done; 1 the work failed; 2 the call or a file is wrong; 3 done in "
+             "part: "
+             "the wanted error was not reached, or a camera was skipped.",
              0) +
          "\n";
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parses the command line, runs one command, and converts errors to one line and an exit code: 0
-// success, 1 the work failed, 2 the call or the scene is wrong, 3 the wanted error was not reached.
+// Reads the command line, runs one command, turns what went wrong into one line and an exit code:
+// 0 done, 1 the work failed, 2 the call or the scene is wrong, 3 done in part (StoppedShort).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -155,10 +155,12 @@ int run(std::vector<std::string> arguments, const Workers& workers) {
   }
   common.threads = static_cast<int>(threads);
   const base::ThreadLimit limit(common.threads);
+  common.progress = std::make_shared<Progress>(common.quiet);
   const base::MemoryLimit memory(common.max_memory_bytes, workers.processes);
   const base::RanksInForce in_force(ranks);
   // A barrier too: no rank allocates memory before all have measured the free memory.
   check_ranks_alike(Json::object({{"the call", part_free(common.arguments)}}));
+  (void)common.progress->begin("reading", Work::Read, 1.0);
   for (const Command& command : commands) {
     if (command.parser->parsed() && command.run) command.run(common);
   }

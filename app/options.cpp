@@ -52,17 +52,26 @@ std::optional<ToneChoice> tone_of(const std::string& text) {
 
 }  // namespace
 
-void add_scene_options(CLI::App& command, SceneInput& input) {
+void add_scene(CLI::App& command, SceneInput& input) {
   command.add_option("SCENE", input.path, "Scene file (TOML)")->required()->type_name("");
   may_repeat(command.add_option("--set", input.overrides,
                                 "Change a key of the scene: quality.gather_rays=64, "
                                 "camera.A.fov_deg=30 (may be repeated)"))
       ->type_name("KEY=VALUE");
+}
+
+void add_scene_options(CLI::App& command, SceneInput& input) {
+  add_scene(command, input);
   command
       .add_option_function<std::string>(
           "--error",
           [&input](const std::string& text) {
             const auto error = parsed<double>(text);
+            if (error && *error > 1.0 && *error <= 100.0) {
+              throw CLI::ValidationError("--error",
+                                         fmt::format("{} means {:g} %; did you mean {:g}?", text,
+                                                     100.0 * *error, *error / 100.0));
+            }
             if (!error || !(*error > 0.0 && *error <= 1.0)) {
               throw CLI::ValidationError("--error",
                                          "\"" + text + "\" is not a number above 0 and at most 1");

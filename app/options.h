@@ -17,7 +17,9 @@
 
 namespace earthshine::app {
 
-// SCENE, --set and --error.
+// SCENE and --set.
+void add_scene(CLI::App& command, SceneInput& input);
+// Those and --error.
 void add_scene_options(CLI::App& command, SceneInput& input);
 
 // --size CxR; empty means the camera's own size.

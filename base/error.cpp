@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <numeric>
 #include <system_error>
-#include <vector>
 
 namespace earthshine::base {
 namespace {
@@ -78,22 +76,6 @@ Blame blame_of_target(int error_number) {
     if (error_number == of_name) return Blame::Input;
   }
   return Blame::Work;
-}
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t substituted = diagonal + (small(a[i]) == small(b[j]) ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substituted});
-    }
-  }
-  return row[b.size()];
 }
 
 std::size_t utf8_length(std::string_view text) {

@@ -3,7 +3,6 @@
 // exit code.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <stdexcept>
@@ -55,26 +54,6 @@ class Error : public std::runtime_error {
 // Blame for a file or folder that cannot be written. Input: the name is invalid (too long, below a
 // file). Work: the system refuses (no permission, read only, full disk).
 [[nodiscard]] Blame blame_of_target(int error_number);
-
-// Levenshtein distance. Upper and lower case are equal.
-[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
-
-// The candidate nearest to `word` by edit distance; "" if all are too different. Words without a
-// common letter never match. candidates: any range of strings.
-template <class Candidates>
-[[nodiscard]] std::string nearest_word(std::string_view word, const Candidates& candidates) {
-  std::size_t best = word.size() / 2 + 2;
-  std::string found;
-  for (const auto& candidate : candidates) {
-    const std::size_t distance = edit_distance(word, candidate);
-    const std::string_view other(candidate);
-    if (distance < best && distance < std::max(word.size(), other.size())) {
-      best = distance;
-      found = std::string(other);
-    }
-  }
-  return found;
-}
 
 // Terminal-safe text. All names from files and arguments are escaped before they are printed, so
 // that none can move the cursor, change the writing direction or be invisible.

@@ -6,6 +6,7 @@
 #include <initializer_list>
 
 #include "base/error.h"
+#include "base/suggest.h"
 #include "base/tone.h"
 
 namespace earthshine::degrade {

@@ -10,10 +10,10 @@
 #include <utility>
 #include <variant>
 
+#include "app/call/memory.h"
 #include "app/call/render_call.h"
 #include "app/cctv/cctv.h"
 #include "app/console.h"
-#include "app/memory.h"
 #include "app/provenance.h"
 #include "app/render/draw.h"
 #include "app/render/effect_table.h"

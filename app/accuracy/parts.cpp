@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "app/call/memory.h"
 #include "app/console.h"
-#include "app/memory.h"
 #include "app/study/json_fields.h"
 #include "base/error.h"
 #include "base/parallel.h"
@@ -135,9 +135,11 @@ CachedResult AccuracyParts::batch(const studies::Batch& batch) {
   const Json cache_key = cache_key_of(batch);
   if (auto part = stored(cache_key)) return *part;
   see_that_work_is_wanted();
-  Progress progress("reference", task_.common.quiet);
+  const double pixels = double(task_.view.columns) * task_.view.rows;
+  const Progress::Listener progress =
+      task_.common.progress->begin("reference", Work::Paths, pixels * batch.paths_per_pixel);
   const double before = base::cpu_seconds();
-  auto image = studies::trace_batch(scene_, task_.view, batch, std::ref(progress));
+  auto image = studies::trace_batch(scene_, task_.view, batch, progress);
   if (!image) end_early();
   CachedResult part{{{"cpu_seconds", base::cpu_seconds() - before}}, std::move(*image)};
   task_.store.keep(cache_key, part);
@@ -155,9 +157,9 @@ CachedResult AccuracyParts::point(const studies::AccuracyStep& step, std::uint64
       [&](const radiosity::SolveOptions& other) { return studies::same_solver(other, solver); });
   studies::AccuracyView view = task_.view;
   view.seed = seed;
-  Progress progress(step.name(), task_.common.quiet);
-  auto result =
-      studies::run_step(scene_, view, step, alike > 1 ? shared_ : single_, std::ref(progress));
+  const Progress::Listener progress =
+      task_.common.progress->begin(step.name(), Work::Picture, double(view.columns) * view.rows);
+  auto result = studies::run_step(scene_, view, step, alike > 1 ? shared_ : single_, progress);
   if (!result) end_early();
   base::Image image{view.columns, view.rows, {}};
   image.channels.push_back({"Y", std::move(result->luminance)});

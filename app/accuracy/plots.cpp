@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "app/accuracy/report.h"
-#include "app/memory.h"
+#include "app/call/memory.h"
 #include "scenes/text/message_text.h"
 
 namespace earthshine::app {

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "app/call/memory.h"
 #include "app/console.h"
-#include "app/memory.h"
 #include "scenes/text/message_text.h"
 
 namespace earthshine::app {
@@ -245,7 +245,12 @@ std::string accuracy_text(const AccuracyTask& task, const AccuracyResult& result
   }
   text += "\n";
   for (const studies::SeriesLaw& law : result.findings.laws) {
-    if (!law.law) continue;
+    if (!law.law) {
+      if (law.points.size() > 1) {
+        text += fmt::format("{} {}: the points follow no power law\n", law.method, law.series);
+      }
+      continue;
+    }
     text += fmt::format(
         "{} {}: error ~ ({})^{:.2f}{}{}\n", law.method, law.series, law.spent, -law.law->exponent,
         law.law->exponent_error ? fmt::format(" +- {:.2f}", *law.law->exponent_error) : "",

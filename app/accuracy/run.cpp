@@ -67,8 +67,10 @@ class Study : AccuracyStages {
       if (!stored && time_left() - expected < (1.0 - reference_share) * task_.call.time_limit_s) {
         if (std::isfinite(time_left())) break;
       }
-      parts_.tell(fmt::format("reference, {} of {} rounds", k + 2, further.size() + 1),
-                  expected * static_cast<double>(further.size() - k), "");
+      const double rest = expected * static_cast<double>(further.size() - k);
+      // About as long as the references take the settings that are measured by them.
+      task_.common.progress->expect_rest(rest + reference_share * (parts_.seconds() + rest));
+      parts_.tell(fmt::format("reference, {} of {} rounds", k + 2, further.size() + 1), rest, "");
       trace_round(references, static_cast<int>(k) + 1, further[k]);
     }
     take_truth(references.front());
@@ -145,6 +147,7 @@ class Study : AccuracyStages {
           left += parts_.wall_per_cpu() * studies::expected_seconds(ladder[j], taken);
         }
       }
+      task_.common.progress->expect_rest(left);
       parts_.tell(fmt::format("{} of {}: {}", k + 1, ladder.size(), step.name()), left,
                   fmt::format("{} in {}", scenes::percent(result_.points.back().error.error),
                               duration(cost.wall_seconds)));

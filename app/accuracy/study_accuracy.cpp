@@ -10,8 +10,8 @@
 
 #include "app/accuracy/report.h"
 #include "app/accuracy/run.h"
+#include "app/call/memory.h"
 #include "app/console.h"
-#include "app/memory.h"
 #include "app/options.h"
 #include "app/output.h"
 #include "app/parts/result_cache.h"

@@ -252,7 +252,7 @@ std::vector<Command> add_degrade(CLI::App& program) {
   parser
       ->add_option("--cctv", call->cctv,
                    "CCTV camera: one that ships, FILE.toml with a [[cctv]], or FILE.toml:NAME")
-      ->group("What is read")
+      ->group("Input")
       ->type_name("CAMERA");
   parser->add_option("--preset", call->preset, "CCTV camera that ships (see --list)")
       ->type_name("NAME");

@@ -2,6 +2,7 @@
 // earthshine study compare: radiosity, distributed lights and direct light in one view.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -10,6 +11,7 @@
 #include "app/console.h"
 #include "app/options.h"
 #include "app/output.h"
+#include "app/render/light.h"
 #include "app/study/study.h"
 #include "base/files/output_file.h"
 #include "base/files/png_file.h"
@@ -19,6 +21,8 @@
 #include "scenes/effects/quality.h"
 #include "studies/compare/compare.h"
 #include "studies/compare/yardstick.h"
+#include "studies/cost/cost.h"
+#include "studies/cost/memory.h"
 
 namespace earthshine::app {
 namespace {
@@ -32,6 +36,8 @@ constexpr const char* compare_file = "compare.json";
 struct CompareCall : StudyCall {
   std::vector<int> lights = studies::CompareOptions().distributed_lights;
   std::string area;
+  double time_limit_s = 0.0;
+  bool dry_run = false;
 };
 
 std::vector<std::string> file_names(const std::vector<int>& lights, const std::string& area) {
@@ -90,6 +96,7 @@ Json json_of(const CompareCall& call, const scenes::Camera& camera,
           {"rule",
            {{"luminance_factor", studies::misleading_factor},
             {"contrast_difference", studies::misleading_contrast}}},
+          {"stopped_by_time_limit", comparison.stopped},
           {"noise_floor", comparison.reference_noise},
           {"errors_below_noise_floor", noisy},
           {"wide_sources", comparison.wide_sources},
@@ -98,6 +105,34 @@ Json json_of(const CompareCall& call, const scenes::Camera& camera,
           {"methods", method_rows(comparison)},
           {"targets", target_rows(comparison)},
           {"verdicts", verdicts}};
+}
+
+// Of two references, each of a solution with half the edge and a picture to half the error, and one
+// picture of each other method.
+raytrace::StageListener progress_of(const CompareCall& call, const Common& common,
+                                    const scenes::Scene& scene,
+                                    const studies::CompareOptions& options) {
+  const auto progress = common.progress;
+  const double triangles = static_cast<double>(scene.triangles.size());
+  const double pixels = double(options.columns) * options.rows;
+  const auto units = [=](const std::string& stage) {
+    const bool reference = stage.starts_with(studies::reference_name);
+    if (stage.ends_with("solution"))
+      return std::pair(Work::Solve, (reference ? 4.0 : 1.0) * triangles);
+    return std::pair(Work::Picture, (reference ? 2.0 : 1.0) * pixels);
+  };
+  const std::string reference = studies::reference_name;
+  std::vector<std::string> stages = {reference + " solution", reference, reference + " solution",
+                                     reference, "solution"};
+  for (std::size_t k = 1; k < studies::compare_methods(call.lights, call.area).size(); ++k) {
+    stages.emplace_back("picture");
+  }
+  for (const std::string& stage : stages) progress->expect(units(stage).first, units(stage).second);
+  if (call.time_limit_s > 0.0) progress->end_within(call.time_limit_s);
+  return [=](const std::string& stage) -> raytrace::Progress {
+    const auto [work, amount] = units(stage);
+    return progress->begin(stage, work, amount);
+  };
 }
 
 void write_pictures(const std::filesystem::path& folder, const studies::Comparison& comparison,
@@ -116,28 +151,98 @@ void write_pictures(const std::filesystem::path& folder, const studies::Comparis
   }
 }
 
-void run(const CompareCall& call, const Common& common) {
-  LoadedScene loaded = load(call.scene, common.quiet);
-  const scenes::Camera& camera = camera_of(call, loaded.scene, common.quiet);
-  (void)raytrace::earth_area(loaded.scene, call.area);  // reports errors before the folder is made
-  prepare_folder(call.folder, file_names(call.lights, call.area), loaded.scene.files);
-
+// The program as users run it.
+studies::CompareOptions options_of(const CompareCall& call, const scenes::Scene& scene,
+                                   const scenes::Camera& camera, const Common& common) {
   studies::CompareOptions options;
   options.columns = call.size ? call.size->columns : camera.columns;
   options.rows = call.size ? call.size->rows : camera.rows;
-  // With the settings of `render`.
   const raytrace::RenderOptions as_rendered =
-      raytrace::render_options(scenes::resolve_quality(loaded.scene));
+      raytrace::render_options(scenes::resolve_quality(scene));
   options.gather_rays = as_rendered.gather_rays;
   options.camera_samples = as_rendered.camera_samples;
   options.distributed_lights = call.lights;
   options.distributed_over = call.area;
-  options.error = loaded.scene.quality.error.value_or(0.0);
-  options.solver = raytrace::picture_solver(loaded.scene, loaded.scene.quality, common.seed);
+  options.error = scene.quality.error.value_or(0.0);
+  options.solver = raytrace::picture_solver(scene, scene.quality, common.seed);
   options.seed = common.seed;
+  options.time_limit_s = call.time_limit_s;
+  return options;
+}
+
+// Seconds of the solves and of each method's pictures, from a pilot of all of them. The references'
+// patches have half the edge: four times as many, each of the two.
+Json plan_of(const CompareCall& call, const Common& common, const LoadedScene& loaded,
+             const scenes::RayQuery& query, const scenes::Camera& camera,
+             const studies::CompareOptions& options) {
+  const std::vector<studies::Method> methods = studies::compare_methods(call.lights, call.area);
+  std::vector<raytrace::RenderOptions> pictures = {
+      studies::compare_picture(options, methods.front(), 1)};
+  for (std::size_t k = 1; k < methods.size(); ++k) {
+    pictures.push_back(studies::compare_picture(options, methods[k]));
+  }
+  studies::MemoryCase sizes =
+      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, options.solver);
+  studies::expect_rows(sizes, loaded.scene, query, options.solver);
+  (void)common.progress->begin("pilot", Work::Pilot, static_cast<double>(pictures.size()));
+  const studies::Pilot pilot =
+      studies::expect_costs({loaded.world(query), options.solver, sizes.row_entries},
+                            std::vector<const scenes::Camera*>(pictures.size(), &camera), pictures);
+  double seconds = 0.0, drawn = 0.0;
+  Json listed = Json::array();
+  for (std::size_t k = 0; k < methods.size(); ++k) {
+    const double one = pilot.bill.pictures[k].seconds;
+    const double all = k == 0 ? 2.0 * one : one;
+    drawn += one;
+    seconds += all;
+    listed.push_back({{"method", methods[k].name}, {"seconds", all}});
+  }
+  const double solve = 9.0 * (studies::total_seconds(pilot.bill) - drawn);
+  seconds += solve;
+  const double limit = call.time_limit_s;
+  return {
+      {"study", "compare"},         {"dry_run", true},
+      {"scene", call.scene.path},   {"camera", camera.name},
+      {"columns", options.columns}, {"rows", options.rows},
+      {"error", options.error},     {"solve_seconds", solve},
+      {"methods", listed},          {"seconds", limit > 0.0 ? std::min(limit, seconds) : seconds}};
+}
+
+std::string plan_text(const Json& plan) {
+  std::string text = fmt::format("{}, camera {}: {} x {}\n", plan["scene"], plan["camera"],
+                                 plan["columns"], plan["rows"]);
+  text +=
+      fmt::format("  {:<20} {:>12}\n", "solutions", duration(plan["solve_seconds"].get<double>()));
+  for (const Json& method : plan["methods"]) {
+    text += fmt::format("  {:<20} {:>12}\n", method["method"],
+                        duration(method["seconds"].get<double>()));
+  }
+  return text + fmt::format("about {} on this machine\n", duration(plan["seconds"].get<double>()));
+}
+
+void run(const CompareCall& call, const Common& common) {
+  LoadedScene loaded = load(call.scene, common.quiet);
+  want_usual_error({}, loaded.scene);
+  const scenes::Camera& camera = camera_of(call, loaded.scene, common.quiet);
+  (void)raytrace::earth_area(loaded.scene, call.area);  // a wrong one is refused before the folder
+  if (!call.dry_run) {
+    prepare_folder(call.folder, file_names(call.lights, call.area), loaded.scene.files);
+  }
+  const bool marks = std::any_of(loaded.scene.objects.begin(), loaded.scene.objects.end(),
+                                 [](const scenes::Object& object) { return object.target; });
+  if (!marks && !common.quiet) {
+    note(
+        "note: the scene marks no object as a target: pictures are compared, and no verdict is "
+        "given. Mark one with target = true");
+  }
+  const studies::CompareOptions options = options_of(call, loaded.scene, camera, common);
   const scenes::RayQuery query = ray_query(loaded, {{&camera}}, common.quiet, true);
-  const studies::Comparison comparison =
-      studies::compare(loaded.world(query), camera, options, progress_of_stages(common));
+  if (call.dry_run) {
+    const Json plan = plan_of(call, common, loaded, query, camera, options);
+    return print(call.json ? dump(plan) : plan_text(plan));
+  }
+  const studies::Comparison comparison = studies::compare(
+      loaded.world(query), camera, options, progress_of(call, common, loaded.scene, options));
 
   const base::ToneReport exposure = base::tone_map(comparison.reference().frame.image).report;
   Json json = json_of(call, camera, options, comparison, exposure);
@@ -152,6 +257,10 @@ void run(const CompareCall& call, const Common& common) {
   base::write_text(folder / compare_page, page_of(name.empty() ? call.scene.path : name,
                                                   camera.name, loaded.scene.warnings, comparison));
   print(call.json ? dump(json) : summary(comparison));
+  if (comparison.stopped.empty()) return;
+  throw StoppedShort(
+      fmt::format("the time limit of {} ended these pictures before their wanted error: {}",
+                  duration(call.time_limit_s), fmt::join(comparison.stopped, ", ")));
 }
 
 }  // namespace
@@ -179,6 +288,10 @@ Command add_study_compare(CLI::App& study) {
       ->add_option("--distributed-over", call->area,
                    "Also with the Earth's lights over this [[area]] of the scene, not its disc")
       ->type_name("NAME");
+  add_time_limit(*parser, call->time_limit_s,
+                 "End pictures so that the whole takes about this long; results then differ "
+                 "between runs");
+  parser->add_flag("--dry-run", call->dry_run, "Only print what would run and how long it takes");
   return {parser, [call](const Common& common) { run(*call, common); }};
 }
 

@@ -50,15 +50,29 @@ std::string share_text(double share) { return fmt::format("{:.3g} %", 100.0 * sh
 
 }  // namespace
 
+PictureWork work_of(const raytrace::RenderOptions& options) {
+  const bool part = options.crop.columns > 0;
+  const double pixels = part ? double(options.crop.columns) * options.crop.rows
+                             : double(options.columns) * options.rows;
+  if (options.indirect == raytrace::Indirect::Paths) {
+    return {Work::Paths, pixels * options.gather_rays};
+  }
+  // Rays grow as one over the squared error; neighbours share them, so that fewer more are needed.
+  const double error = options.error > 0.0 ? options.error : 0.05;
+  return {Work::Picture, pixels * 0.05 / error};
+}
+
 raytrace::Frame draw_frame(const Studio& studio, const scenes::Camera& camera,
                            const raytrace::RenderOptions& options) {
   const LoadedScene& loaded = studio.loaded;
-  Progress progress(fmt::format("render {}", camera.name), studio.common.quiet);
+  const auto [work, units] = work_of(options);
+  const Progress::Listener progress =
+      studio.common.progress->begin("camera " + camera.name, work, units);
   if (options.indirect == raytrace::Indirect::Paths) {
-    return trace(studio, camera, options, std::ref(progress));
+    return trace(studio, camera, options, progress);
   }
   return raytrace::render(loaded.world(studio.query), studio.light.solution, camera, options,
-                          std::ref(progress));
+                          progress);
 }
 
 Drawn draw_picture(const Studio& studio, const scenes::Camera& camera, StageTimes& times) {

@@ -16,7 +16,13 @@ struct Drawn {
   raytrace::Limit limit = raytrace::Limit::None;
   double seconds_to_go = 0.0;  // estimate until the wanted error, if it was not reached
 };
-// Renders without a stated error.
+// A picture's units of work (app/progress.h).
+struct PictureWork {
+  Work work;
+  double units;
+};
+[[nodiscard]] PictureWork work_of(const raytrace::RenderOptions& options);
+// Rays alone, without a statement of what they are worth.
 [[nodiscard]] raytrace::Frame draw_frame(const Studio& studio, const scenes::Camera& camera,
                                          const raytrace::RenderOptions& options);
 [[nodiscard]] Drawn draw_picture(const Studio& studio, const scenes::Camera& camera,

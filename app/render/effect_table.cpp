@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
+#include "app/call/memory.h"
 #include "app/cctv/cctv.h"
 #include "app/console.h"
-#include "app/memory.h"
 #include "app/render/light.h"
 #include "base/parallel.h"
 
@@ -76,6 +76,8 @@ Expectation expect(const LoadedScene& loaded, const RenderCall& call, const Comm
   if (!call.solution.empty()) sizes.solves = false;
   studies::expect_rows(sizes, loaded.scene, query, solver);
   Expectation expected;
+  (void)common.progress->begin("pilot", Work::Pilot,
+                               static_cast<double>(loaded.asked.cameras.size()));
   expected.pilot = studies::expect_costs({loaded.world(query), solver, sizes.row_entries},
                                          loaded.asked.cameras, options);
   // The pilot's own solve then only supplies light.

@@ -7,8 +7,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "app/call/memory.h"
 #include "app/console.h"
-#include "app/memory.h"
 #include "app/options.h"
 #include "base/files/output_file.h"
 #include "base/parallel.h"
@@ -32,7 +32,7 @@ Solved solve_in_time(const LightCall& wanted, const radiosity::SolveOptions& sol
   try {
     const base::StopInForce stop(
         [&] { return (wanted.stop && wanted.stop()) || (limit > 0.0 && before + gone() > limit); });
-    light.solution = solve_or_read(wanted.loaded, wanted.query, solver, "", times);
+    light.solution = solve_or_read(wanted.loaded, wanted.query, solver, "", wanted.common, times);
     light.solved = true;
   } catch (const base::Stopped&) {
     times.add({{"solve, broken off", gone()}});
@@ -78,7 +78,7 @@ Solved solve_or_take(const LightCall& wanted, StageTimes& times) {
     return solve_within(wanted, call.time_limit_s, times);
   }
   const auto solve = [&] {
-    return solve_or_read(loaded, wanted.query, light.solver, call.solution, times);
+    return solve_or_read(loaded, wanted.query, light.solver, call.solution, wanted.common, times);
   };
   if (!wanted.share && call.solution.empty()) return solve_in_time(wanted, light.solver, times);
   light.solution = wanted.share && call.solution.empty() ? wanted.share(solve) : solve();
@@ -104,6 +104,10 @@ Solved solve_as_exactly(const ExactCall& call, StageTimes& times) {
   const LoadedScene& loaded = call.loaded;
   const scenes::World scene = loaded.world(call.query);
   const auto start = std::chrono::steady_clock::now();
+  const double triangles = static_cast<double>(loaded.scene.triangles.size());
+  call.common.progress->expect(Work::Surfaces, triangles);
+  if (call.time_limit_s > 0.0) call.common.progress->end_within(call.time_limit_s);
+  (void)call.common.progress->begin("solve", Work::Surfaces, triangles);
   double in_stages = 0.0;
   raytrace::Wanted wanted = wanted_error(loaded, call.common, call.time_limit_s, times);
   wanted.stop = Interrupt::asked;
@@ -115,8 +119,8 @@ Solved solve_as_exactly(const ExactCall& call, StageTimes& times) {
   };
   raytrace::SteeredSolution found = raytrace::reach_surfaces(
       scene, wanted, call.common.seed, listen, [&](const std::string& stage) -> raytrace::Progress {
-        const auto bar = std::make_shared<Progress>(stage, call.common.quiet);
-        return [bar](std::size_t done, std::size_t total) { (*bar)(done, total); };
+        call.common.progress->relabel(stage);
+        return {};
       });
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   times.add({{"residual", std::max(0.0, taken.count() - in_stages)}});
@@ -198,9 +202,11 @@ void add_solution_option(CLI::App& command, std::string& path) {
 
 radiosity::Solution solve_or_read(const LoadedScene& loaded, const scenes::RayQuery& query,
                                   const radiosity::SolveOptions& options, const std::string& path,
-                                  StageTimes& times) {
+                                  const Common& common, StageTimes& times) {
   radiosity::Solution solution;
   if (path.empty()) {
+    (void)common.progress->begin("solve", Work::Solve,
+                                 static_cast<double>(loaded.scene.triangles.size()));
     const auto fits = [&](const radiosity::Patches& patches) {
       check_patch_memory(loaded, query, options, patches.count());
     };

@@ -65,7 +65,8 @@ void add_solution_option(CLI::App& command, std::string& path);
 [[nodiscard]] radiosity::Solution solve_or_read(const LoadedScene& loaded,
                                                 const scenes::RayQuery& query,
                                                 const radiosity::SolveOptions& options,
-                                                const std::string& path, StageTimes& times);
+                                                const std::string& path, const Common& common,
+                                                StageTimes& times);
 
 void write_solution(const std::string& path, const radiosity::Solution& solution,
                     const LoadedScene& loaded, const radiosity::SolveOptions& options);

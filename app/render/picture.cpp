@@ -132,14 +132,24 @@ base::ToneMapped toned(const Studio& studio, const base::Image& image) {
                       choice.curve);
 }
 
-void tell(const Studio& studio, const raytrace::Frame& frame, const StageTimes& times) {
+void tell(const Studio& studio, const scenes::Camera& camera, const PictureFiles& files,
+          const raytrace::Frame& frame, const StageTimes& times) {
+  std::vector<std::string> written;
+  for (const std::string& file : {files.output, files.png, files.cctv, files.range}) {
+    if (!file.empty()) written.push_back(file);
+  }
+  note(fmt::format("camera {}{}{}", camera.name, written.empty() ? "" : ": ",
+                   fmt::join(written, ", ")));
+  // The stages before the first picture serve all.
+  const bool first = studio.number == 0;
   for (const auto& [stage, seconds] : times.stages()) {
+    if (!first && stage != "render" && stage != "write") continue;
     note(fmt::format("  {:<16} {:>10}", stage, duration(seconds)));
   }
   note(fmt::format("  {:<16} {:>10}, peak memory {:.0f} MiB", "total", duration(times.total()),
                    peak_memory_mib()));
   const radiosity::SolveReport& solved = studio.light.solution.report;
-  if (studio.light.solved && solved.patches > 0) {
+  if (first && studio.light.solved && solved.patches > 0) {
     note(fmt::format("  {} patches, {} form-factor and {} shadow rays, {} iterations to {:.1g}",
                      solved.patches, short_count(static_cast<double>(solved.form_factor_rays)),
                      short_count(static_cast<double>(solved.shadow_rays)), solved.iterations,
@@ -247,7 +257,7 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
     }
   }
   if (studio.common.quiet) return picture;
-  tell(studio, frame, times);
+  tell(studio, camera, files, frame, times);
   if (!call.no_error) {
     std::istringstream lines("  " + error_text(drawn, wanted));
     for (std::string line; std::getline(lines, line);) note(line);

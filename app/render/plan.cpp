@@ -7,10 +7,10 @@
 #include <bit>
 #include <memory>
 
+#include "app/call/memory.h"
 #include "app/call/render_call.h"
 #include "app/cctv/cctv.h"
 #include "app/console.h"
-#include "app/memory.h"
 #include "app/options.h"
 #include "app/render/effect_table.h"
 #include "app/render/light.h"

@@ -7,14 +7,15 @@
 #include <filesystem>
 #include <memory>
 
+#include "app/call/memory.h"
 #include "app/call/render_call.h"
 #include "app/cctv/cctv.h"
 #include "app/cctv/range.h"
 #include "app/console.h"
-#include "app/memory.h"
 #include "app/options.h"
 #include "app/output.h"
 #include "app/provenance.h"
+#include "app/render/draw.h"
 #include "app/render/effect_table.h"
 #include "app/render/light.h"
 #include "app/render/render_parts.h"
@@ -168,6 +169,20 @@ std::vector<const scenes::Camera*> cameras_of(const std::vector<Wanted>& picture
   return cameras;
 }
 
+void expect_work(const RenderCall& call, const Common& common, const LoadedScene& loaded,
+                 const std::vector<const scenes::Camera*>& cameras) {
+  Progress& progress = *common.progress;
+  if (loaded.effects.solution && call.solution.empty() &&
+      call.indirect == raytrace::Indirect::Radiosity) {
+    progress.expect(Work::Solve, static_cast<double>(loaded.scene.triangles.size()));
+  }
+  for (const scenes::Camera* camera : cameras) {
+    const auto [work, units] = work_of(picture_options(call, common, loaded, *camera));
+    progress.expect(work, units);
+  }
+  if (call.time_limit_s > 0.0) progress.end_within(call.time_limit_s);
+}
+
 void run(RenderCall call, const Common& common) {
   check_call(call, common.quiet);
   check_part(call, common.quiet);
@@ -180,8 +195,15 @@ void run(RenderCall call, const Common& common) {
     });
   });
   want_usual_error(call, loaded.scene);
-  const scenes::RayQuery query = times.measure(
-      "build", [&] { return ray_query(loaded, {cameras_of(pictures)}, common.quiet, true); });
+  const auto query = times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
+  const std::size_t asked = pictures.size();
+  std::vector<std::string> skipped;
+  for (const scenes::Camera* hidden :
+       skip_hidden_cameras(loaded.scene, query, loaded.asked.cameras, common.quiet)) {
+    skipped.push_back(hidden->name);
+    std::erase_if(pictures, [&](const Wanted& picture) { return picture.camera == hidden; });
+  }
+  check_input(loaded, query, {loaded.asked.cameras}, common.quiet);
   if (call.over.asked()) {
     const scenes::Camera& camera = *pictures.front().camera;
     call.photo = read_photo(call.over, camera, common.quiet);
@@ -201,13 +223,14 @@ void run(RenderCall call, const Common& common) {
   }
   if (call.range_alone()) {
     if (call.json) print(dump(ranges.size() == 1 ? ranges.front() : Json(ranges)));
-    return;
+    return check_skipped(skipped);
   }
   for (const Wanted& picture : pictures) {
     const raytrace::RenderOptions options = picture_options(call, common, loaded, *picture.camera);
     check_memory(loaded, query, solve_options(loaded.scene, common), &options,
                  call.solution.empty());
   }
+  if (!call.part.in_parts()) expect_work(call, common, loaded, cameras_of(pictures));
   std::optional<Expectation> expected;
   if (!call.report.empty()) {
     expected = times.measure("pilot", [&] { return expect(loaded, call, common, query); });
@@ -254,12 +277,12 @@ void run(RenderCall call, const Common& common) {
                      dump(report_json(loaded, call, *expected, light.solution.report, taken, times,
                                       base::cpu_seconds() - cpu_before)));
   }
-  if (call.json) print(dump(reports.size() == 1 ? reports.front() : reports));
+  if (call.json) print(dump(asked == 1 ? reports.front() : reports));
   if (whole) {
     for (const Picture& picture : taken) {
       check_reached(call.scene, picture.limit, loaded.scene.quality.error.value_or(0.0));
     }
-    return;
+    return check_skipped(skipped);
   }
   end_interrupted(pictures[reports.size() - 1].files);
 }
@@ -276,7 +299,7 @@ Command add_render(CLI::App& program) {
   file_option("-o,--output", call->output, "Linear picture in cd/m2 (OpenEXR)");
   file_option("--png", call->png, "Also a tone-mapped picture");
   file_option("--cctv", call->cctv, "Also the picture on the camera's CCTV monitor (PNG)");
-  parser->get_option("--cctv")->group("What is written");
+  parser->get_option("--cctv")->group("Output");
   add_tone_options(*parser, call->tone,
                    " (default); of several cameras the first one's white is that of all");
   file_option("--range", call->range,

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "app/call/memory.h"
 #include "app/command.h"
 #include "app/console.h"
-#include "app/memory.h"
 #include "app/options.h"
 #include "app/output.h"
 #include "app/render/error_json.h"
@@ -205,14 +205,16 @@ Solved solve_alone(const ExactCall& call, const std::string& file, StageTimes& t
   const bool steered = file.empty() && loaded.scene.quality.error;
   check_memory(loaded, call.query,
                steered ? raytrace::first_surface_options(loaded.scene, *loaded.scene.quality.error,
-                                                        call.common.seed)
+                                                         call.common.seed)
                        : options,
                nullptr, file.empty());
   if (steered) return solve_as_exactly(call, times);
   Solved light;
   light.solver = options;
-  light.solution = solve_or_read(loaded, call.query, options, file, times);
+  light.solution = solve_or_read(loaded, call.query, options, file, call.common, times);
   light.solved = true;
+  (void)call.common.progress->begin("error of the solution", Work::Solve,
+                                    static_cast<double>(loaded.scene.triangles.size()));
   light.surface = times.measure("error", [&] {
     return raytrace::surface_error(loaded.world(call.query), light.solution, options);
   });

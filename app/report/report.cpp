@@ -43,7 +43,7 @@ Command add_report(CLI::App& program) {
   CLI::App* parser = program.add_subcommand(
       "report", "Draw a study's report.html anew, from the study.json in its folder");
   const auto call = std::make_shared<ReportCall>();
-  parser->add_option("folder", call->folder, "The study's folder")->type_name("DIR")->required();
+  parser->add_option("DIR", call->folder, "The study's folder")->type_name("")->required();
   parser->add_flag("--plain", call->plain, "Without the script: no plots, no sliders");
   return {parser, [call](const Common& common) {
             write_report(call->folder, read_study(call->folder), {call->plain, common.quiet});

@@ -152,6 +152,8 @@ struct StudyResults {
   Json settings = Json::object(), provenance = Json::object();
   std::vector<StudyCost> costs;
   std::vector<std::string> notes;
+  // Cameras inside a body; the notes say so in study.json.
+  std::vector<std::string> skipped = {};
 };
 
 // For cameras and targets with results at two or more positions.

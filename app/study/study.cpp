@@ -89,13 +89,6 @@ studies::StudyFile study_of(const StudyCall& call, const std::vector<std::string
   return study;
 }
 
-raytrace::StageListener progress_of_stages(const Common& common) {
-  return [quiet = common.quiet](const std::string& stage) -> raytrace::Progress {
-    const auto progress = std::make_shared<Progress>(stage, quiet);
-    return [progress](std::size_t done, std::size_t total) { (*progress)(done, total); };
-  };
-}
-
 std::vector<Command> add_study(CLI::App& program) {
   CLI::App* study = program.add_subcommand(
       "study", "Questions answered about a scene: visibility, orbit, compare, accuracy, run");

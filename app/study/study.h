@@ -45,7 +45,4 @@ void add_wanted_options(CLI::App& command, std::vector<std::string>& wanted,
 [[nodiscard]] Command add_study_run(CLI::App& study);
 [[nodiscard]] Command add_study_visibility(CLI::App& study);
 
-// Shows a progress line per stage of a study.
-[[nodiscard]] raytrace::StageListener progress_of_stages(const Common& common);
-
 }  // namespace earthshine::app

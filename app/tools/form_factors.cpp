@@ -11,9 +11,9 @@
 #include <memory>
 #include <numeric>
 
+#include "app/call/memory.h"
 #include "app/command.h"
 #include "app/console.h"
-#include "app/memory.h"
 #include "app/options.h"
 #include "base/error.h"
 #include "radiosity/exact/form_factors.h"

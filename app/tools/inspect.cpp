@@ -227,7 +227,7 @@ Json report_of(const LoadedScene& loaded) {
 Command add_inspect(CLI::App& program) {
   CLI::App* parser = program.add_subcommand("inspect", "Show what was read from a scene file");
   const auto call = std::make_shared<InspectCall>();
-  add_scene_options(*parser, call->scene);
+  add_scene(*parser, call->scene);
   parser->add_flag("--json", call->json, "JSON on standard output");
   return {parser, [call](const Common&) {
             LoadedScene loaded = load(call->scene, true);

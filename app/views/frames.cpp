@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/call/memory.h"
 #include "app/console.h"
-#include "app/memory.h"
 #include "app/parts/shared_solution.h"
 #include "app/study/json_fields.h"
 #include "app/study/study.h"
@@ -172,8 +172,8 @@ Json StudyFrames::cache_key(const StudyCamera& camera) const {
 radiosity::Solution StudyFrames::solve(StageTimes& times) const {
   const EndAtOnce nothing_to_keep;
   const LoadedScene& basis = part_.basis_scene;
-  const raytrace::Progress progress = progress_of_stages(common_)("solve " + part_.path);
-  if (progress) progress(0, 1);
+  (void)common_.progress->begin("solve " + part_.path, Work::StudySolve,
+                                static_cast<double>(basis.scene.triangles.size()));
   radiosity::Solution found = times.measure("solve", [&] {
     const scenes::Scene cut = scene_to_cut(basis.scene);
     const scenes::LightGroups groups = scenes::find_light_groups(cut);
@@ -220,6 +220,7 @@ const radiosity::Solution& StudyFrames::solution(std::vector<StudyCost>& costs) 
   if (!cost.found) cost.rays = solution_->report.form_factor_rays + solution_->report.shadow_rays;
   cost.seconds = times.total();
   costs.push_back(cost);
+  if (cost.found) common_.progress->drop(Work::StudySolve);
   return *solution_;
 }
 
@@ -249,6 +250,7 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
   std::string said;
   if (std::optional<Frame> frame = find(key, said)) {
     costs.push_back(cost_of(camera, *frame, true));
+    common_.progress->drop(Work::StudyPicture);
     return frame;
   }
   if (how_.task == PartCall::Task::Merge) {
@@ -265,9 +267,10 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
   how.regions = regions_at(camera);
   raytrace::Frame drawn;
   try {
-    drawn = raytrace::render(basis.world(*part_.query), light, *camera.camera, how,
-                             progress_of_stages(common_)(
-                                 fmt::format("camera {} of {}", camera.camera->name, part_.path)));
+    drawn = raytrace::render(
+        basis.world(*part_.query), light, *camera.camera, how,
+        common_.progress->begin(fmt::format("camera {} of {}", camera.camera->name, part_.path),
+                                Work::StudyPicture, static_cast<double>(values_of(camera))));
   } catch (const Interrupt::Left&) {
     return std::nullopt;
   }

@@ -100,7 +100,6 @@ void find_cameras(const studies::StudyFile& study, const std::vector<const scene
                   const Common& common, StudyPart& part) {
   const scenes::Scene& scene = part.loaded.scene;
   for (const scenes::Camera* camera : chosen) {
-    raytrace::check_camera(scene, *part.query, *camera);
     StudyCamera& made = part.cameras.emplace_back();
     made.camera = camera;
     made.columns = study.columns.value_or(camera->columns);
@@ -236,8 +235,9 @@ std::unique_ptr<StudyPart> prepare_part(const studies::StudyFile& study, std::si
   scenes::SceneUse use;
   use.cameras = chosen_cameras(study, scene);
   use.moves_along_orbit = !study.positions_deg.empty() || study.time;
-  part->query =
-      std::make_unique<const scenes::RayQuery>(ray_query(part->loaded, use, common.quiet));
+  part->query = std::make_unique<const scenes::RayQuery>(scene);
+  part->skipped = skip_hidden_cameras(scene, *part->query, use.cameras, common.quiet);
+  check_input(part->loaded, *part->query, use, common.quiet);
   find_cameras(study, use.cameras, common, *part);
   part->basis = std::make_unique<const studies::LightBasis>(scene, find_places(study, *part),
                                                             study.lamps, study.basis);

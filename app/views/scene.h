@@ -40,6 +40,7 @@ struct StudyPart {
   LoadedScene basis_scene;  // of the basis, with its groups and effects
   std::unique_ptr<const scenes::RayQuery> query;
   std::vector<StudyCamera> cameras;
+  std::vector<const scenes::Camera*> skipped;  // inside a body
   std::vector<std::string> targets;
 
   // "orbit 30 deg", or along time "2026-03-01T12:00:00Z".

@@ -67,6 +67,10 @@ studies::ConditionAt condition_at(const StudyPart& part, std::size_t condition) 
   return {condition % places, condition / places};
 }
 
+double units_of_conditions(const StudyPart& part, const StudyCamera& camera) {
+  return static_cast<double>(part.conditions()) * camera.columns * camera.rows;
+}
+
 std::vector<ConditionEntry> conditions_of(const StudyPart& part, std::size_t scene) {
   std::vector<ConditionEntry> conditions;
   for (std::size_t k = 0; k < part.conditions(); ++k) {
@@ -162,7 +166,8 @@ Judged StudyConditions::judge(const StudyCamera& camera, const studies::BasisVie
                               Share batches, std::vector<StudyCost>& costs) {
   const auto start = std::chrono::steady_clock::now();
   const raytrace::Progress progress =
-      progress_of_stages(common_)(fmt::format("conditions of camera {}", camera.camera->name));
+      common_.progress->begin(fmt::format("conditions of camera {}", camera.camera->name),
+                              Work::Conditions, units_of_conditions(part_, camera));
   std::optional<degrade::Setup> cctv;
   if (camera.cctv) cctv = camera.cctv->chain;
   Judged all(part_.conditions());

@@ -97,7 +97,8 @@ base::Image draw_distributed(const StudyPart& part, const StudyCamera& camera,
   options.stop = Interrupt::leave_or_go_on;
   const scenes::Effects effects = scenes::find_effects(scene, groups, asked);
   return raytrace::render({scene, groups, effects, *part.query}, {}, *camera.camera, options,
-                          progress_of_stages(common)("picture " + wish.name))
+                          common.progress->begin("picture " + wish.name, Work::Picture,
+                                                 double(camera.columns) * camera.rows))
       .image;
 }
 

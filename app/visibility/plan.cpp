@@ -70,6 +70,8 @@ Json plan_of(const StudyPart& part, const std::filesystem::path& folder, const C
     studies::expect_rows(sizes, basis.scene, *part.query, solver);
     studies::add_picture(sizes, basis.groups, basis.effects, pictures.front());
     memory_mib = studies::memory_needed(sizes).total() / 1048576.0;
+    (void)common.progress->begin("pilot of " + part.path, Work::Pilot,
+                                 static_cast<double>(cameras.size()));
     const studies::Pilot pilot = studies::expect_costs(
         {basis.world(*part.query), solver, sizes.row_entries}, cameras, pictures);
     double drawn = 0.0;

@@ -74,6 +74,7 @@ class Runner {
   [[nodiscard]] StudyResults run() {
     const Interrupt interrupt;
     ways_.resize(task_.study.wanted.size());
+    for (const StudyPart* part : parts_) expect_work(*part);
     for (const StudyPart* part : parts_) {
       StudyFrames frames(*part, fs::path(task_.folder) / points_folder, common_, task_.part);
       StudyConditions conditions(*part, task_.study, frames.store(), common_);
@@ -92,7 +93,18 @@ class Runner {
   }
 
  private:
-  // Returns whether everything was done.
+  void expect_work(const StudyPart& part) {
+    const LoadedScene& basis = part.basis_scene;
+    common_.progress->expect(Work::StudySolve, static_cast<double>(basis.scene.triangles.size()));
+    for (const StudyCamera& camera : part.cameras) {
+      const double pixels = double(camera.columns) * camera.rows;
+      common_.progress->expect(Work::StudyPicture,
+                               static_cast<double>(part.basis->groups().count()) * pixels);
+      common_.progress->expect(Work::Conditions, units_of_conditions(part, camera));
+    }
+  }
+
+  // Whether all was done.
   bool look_through(const StudyPart& part, const StudyCamera& camera, StudyFrames& frames,
                     StudyConditions& conditions) {
     CameraFindings found{part, camera, 0.0, 0.0, Judged(part.conditions())};
@@ -134,6 +146,8 @@ class Runner {
     if (!ways || !judged || !thumbnails_are_there(work, *judged)) return false;
     const auto frame = work.known_frame(results_.costs);
     if (!frame) return false;
+    common_.progress->drop(Work::StudyPicture);
+    common_.progress->drop(Work::Conditions);
     take(*frame, found);
     found.conditions = std::move(*judged);
     results_.costs.push_back(
@@ -179,7 +193,23 @@ void note_unused(const StudyTask& task) {
   }
 }
 
-// Loads the scenes of the task, and sets its name and pictures if they are not given.
+// Pictures by cameras that every scene skips are skipped too.
+void drop_pictures_of_skipped(studies::StudyFile& study,
+                              const std::vector<const StudyPart*>& parts) {
+  std::erase_if(study.pictures, [&](const studies::PictureWish& wish) {
+    const auto is_wanted = [&](const auto& camera) { return camera.name == wish.camera; };
+    const bool drawn = std::ranges::any_of(parts, [&](const StudyPart* part) {
+      return std::ranges::any_of(part->cameras,
+                                 [&](const StudyCamera& c) { return is_wanted(*c.camera); });
+    });
+    return !drawn && std::ranges::any_of(parts, [&](const StudyPart* part) {
+      return std::ranges::any_of(part->skipped,
+                                 [&](const scenes::Camera* c) { return is_wanted(*c); });
+    });
+  });
+}
+
+// The scenes of the task, and its name and pictures where it says nothing of them.
 Parts prepare(StudyTask& task, const Common& common) {
   if (!common.quiet) note_unused(task);
   Parts parts = prepare_parts(task.study, common);
@@ -190,6 +220,7 @@ Parts prepare(StudyTask& task, const Common& common) {
   }
   const std::string& scene = parts.front()->loaded.scene.name;
   if (task.study.path.empty() && !scene.empty()) task.study.name = scene;
+  drop_pictures_of_skipped(task.study, pointers(parts));
   fill_pictures(task.study, *parts.front());
   check_pictures(task.study, pointers(parts));
   return parts;
@@ -204,6 +235,14 @@ Json plan_study(StudyTask task, const Common& common) {
 
 std::optional<StudyResults> run_study(StudyTask task, const Common& common) {
   const Parts parts = prepare(task, common);
+  std::vector<std::string> skipped;
+  for (const auto& part : parts) {
+    for (const scenes::Camera* camera : part->skipped) {
+      skipped.push_back(parts.size() > 1 ? camera->name + " of " + part->path : camera->name);
+      part->loaded.scene.warnings.push_back(fmt::format(
+          "camera {} is inside a body and was skipped", scenes::in_quotes(camera->name)));
+    }
+  }
   const std::vector<std::string> files = {study_file, results_table, report_file};
   Files inputs = {task.study.path};
   for (const auto& part : parts) {
@@ -224,6 +263,7 @@ std::optional<StudyResults> run_study(StudyTask task, const Common& common) {
     return std::nullopt;
   }
   StudyResults study = Runner(task, common, parts).run();
+  study.skipped = std::move(skipped);
   if (!study.complete && has_finished_results(task.folder)) {
     throw base::Error(base::Blame::Work, "study", "interrupted", {},
                       "The results of the run before stand in " + task.folder +
@@ -254,6 +294,7 @@ void run_and_print(StudyTask task, const Common& common, bool json, bool dry_run
   const std::optional<StudyResults> found = run_study(std::move(task), common);
   if (!found) return;  // a part has no output
   print(json ? dump_lines(to_json(*found)) : text(*found));
+  check_skipped(found->skipped);
 }
 
 }  // namespace earthshine::app

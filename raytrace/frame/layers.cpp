@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/suggest.h"
 #include "raytrace/frame/cryptomatte.h"
 #include "raytrace/frame/first_hit.h"
 

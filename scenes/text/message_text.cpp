@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/suggest.h"
 
 namespace earthshine::scenes {
 
@@ -42,12 +43,8 @@ std::string listed(std::span<const std::string> words) {
 }
 
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
-  if (word.size() > 200) return {};  // the edit distance costs the square of the length
-  std::string nearest = base::nearest_word(word, candidates);
-  // "fov" for "fov_deg" has a large edit distance but is a likely match.
-  for (const std::string& candidate : candidates) {
-    if (nearest.empty() && word.size() > 2 && candidate.starts_with(word)) nearest = candidate;
-  }
+  if (word.size() > 200) return {};  // the distance costs length times length
+  const std::string nearest = base::nearest_word(word, candidates);
   return nearest.empty() ? std::string() : fmt::format("Did you mean {}?", in_quotes(nearest));
 }
 

@@ -40,7 +40,10 @@ std::vector<SeriesLaw> laws_of(const std::vector<MeasuredStep>& points, double r
     const double error = point.setting_error.error;
     if (spent.amount > 0.0 && error > resolution) found->points.push_back({spent.amount, error});
   }
-  for (SeriesLaw& law : laws) law.law = fit_power_law(law.points);
+  for (SeriesLaw& law : laws) {
+    law.law = fit_power_law(law.points);
+    if (law.law && !law.law->holds()) law.law.reset();
+  }
   return laws;
 }
 

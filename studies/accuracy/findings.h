@@ -57,7 +57,7 @@ struct SeriesLaw {
   std::string method, series;
   std::string spent;  // unit of x: "patches", "camera samples a pixel"
   std::vector<ErrorAt> points;
-  std::optional<PowerLaw> law;
+  std::optional<PowerLaw> law;  // where it holds
 };
 
 // The cheapest measured settings for a wanted error, by CPU seconds.

@@ -128,6 +128,12 @@ double PowerLaw::error_at(double x) const {
   return std::hypot(factor * std::pow(x, -exponent), floor);
 }
 
+bool PowerLaw::holds() const {
+  constexpr double known_to = 0.25, steepest = 2.5;
+  return exponent_error && *exponent_error <= known_to && exponent > 2.0 * *exponent_error &&
+         exponent <= steepest;
+}
+
 std::optional<PowerLaw> fit_power_law(const std::vector<ErrorAt>& points) {
   std::vector<LogPoint> log;
   for (const ErrorAt& point : points) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -45,7 +46,9 @@ class Comparing {
     const auto methods = compare_methods(options_.distributed_lights, options_.distributed_over);
     comparison_.wide_sources = has_wide_sources(study_);
     take_references(methods.front());
-    for (std::size_t k = 1; k < methods.size(); ++k) at_the_settings(methods[k]);
+    for (std::size_t k = 1; k < methods.size(); ++k) {
+      at_the_settings(methods[k], methods.size() - k);
+    }
     return std::move(comparison_);
   }
 
@@ -54,25 +57,22 @@ class Comparing {
     return listen_ ? listen_(stage) : raytrace::Progress{};
   }
 
-  [[nodiscard]] raytrace::RenderOptions render_options(const Method& method) const {
-    raytrace::RenderOptions render;
-    render.columns = options_.columns;
-    render.rows = options_.rows;
-    render.gather_rays = options_.gather_rays;
-    render.camera_samples = options_.camera_samples;
-    render.indirect = method.indirect;
-    render.error = options_.error;
-    if (method.distributed_lights > 0) render.distributed_lights = method.distributed_lights;
-    render.distributed_over = method.distributed_over;
-    render.seed = options_.seed;
-    render.aovs = {"variance"};
-    return render;
-  }
-
+  // share_of_rest: of the time that is left, for this picture.
   [[nodiscard]] raytrace::Frame draw(const radiosity::Solution& solution,
-                                     const raytrace::RenderOptions& render,
-                                     const std::string& stage) const {
-    return raytrace::render(study_, solution, camera_, render, begin_stage(stage));
+                                     raytrace::RenderOptions render, const std::string& stage,
+                                     double share_of_rest, const std::string& method) {
+    if (options_.time_limit_s > 0.0) {
+      const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start_;
+      const double left = options_.time_limit_s - gone.count();
+      render.time_limit_s = std::max(1e-3, share_of_rest * left);
+    }
+    raytrace::Frame frame = raytrace::render(study_, solution, camera_, render, begin_stage(stage));
+    const bool ended = frame.report.finished_share < 1.0 || frame.report.growth > 1.0;
+    std::vector<std::string>& stopped = comparison_.stopped;
+    if (options_.time_limit_s > 0.0 && ended && (stopped.empty() || stopped.back() != method)) {
+      stopped.push_back(method);
+    }
+    return frame;
   }
   [[nodiscard]] radiosity::Solution solve(const radiosity::SolveOptions& solver,
                                           const std::string& stage) const {
@@ -92,14 +92,9 @@ class Comparing {
       for (const auto& [name, seconds] : solution.report.seconds) result.solve_seconds += seconds;
       const double solved = base::cpu_seconds();
       result.solve_cpu_seconds += solved - begin;
-      raytrace::RenderOptions render = render_options(method);
-      render.error *= 0.5;
-      render.gather_rays *= options_.reference_factor;
-      render.camera_samples *= options_.reference_factor;
-      render.denoise = options_.error > 0.0;
-      render.seed = options_.seed + k;
-      if (k == 1) render.aovs = {"object"};
-      raytrace::Frame frame = draw(solution, render, stage);
+      // A quarter of the time for each reference.
+      raytrace::Frame frame = draw(solution, compare_picture(options_, method, k), stage,
+                                   k == 1 ? 0.25 : 1.0 / 3.0, method.name);
       result.render_cpu_seconds += base::cpu_seconds() - solved;
       result.render_seconds += frame.report.seconds;
       const std::vector<float> luminance = base::luminance_of(frame.image);
@@ -147,7 +142,7 @@ class Comparing {
     }
   }
 
-  void at_the_settings(const Method& method) {
+  void at_the_settings(const Method& method, std::size_t to_come) {
     MethodResult result;
     result.method = method;
     radiosity::Solution solution;
@@ -159,7 +154,8 @@ class Comparing {
       result.solve_cpu_seconds = base::cpu_seconds() - begin;
     }
     const double solved = base::cpu_seconds();
-    result.frame = draw(solution, render_options(method), method.name);
+    result.frame = draw(solution, compare_picture(options_, method), method.name,
+                        1.0 / static_cast<double>(to_come), method.name);
     result.render_cpu_seconds = base::cpu_seconds() - solved;
     result.render_seconds = result.frame.report.seconds;
     result.error = picture_error(result.frame.error.luminance, reflected_, counted_);
@@ -172,13 +168,36 @@ class Comparing {
   const scenes::Camera& camera_;
   const CompareOptions& options_;
   const raytrace::StageListener& listen_;
-  ReferencePair pair_, reflected_;            // all light; without light straight from the sources
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  ReferencePair pair_, reflected_;  // of all light; without that straight from the sources
   std::vector<float> mean_, mean_reflected_;  // luminance of the pairs' means
   std::vector<bool> counted_;                 // pixels of `reflected_`
   Comparison comparison_;
 };
 
 }  // namespace
+
+raytrace::RenderOptions compare_picture(const CompareOptions& options, const Method& method,
+                                        std::uint64_t reference) {
+  raytrace::RenderOptions render;
+  render.columns = options.columns;
+  render.rows = options.rows;
+  render.gather_rays = options.gather_rays;
+  render.camera_samples = options.camera_samples;
+  render.indirect = method.indirect;
+  render.error = options.error;
+  if (method.distributed_lights > 0) render.distributed_lights = method.distributed_lights;
+  render.distributed_over = method.distributed_over;
+  render.seed = options.seed + reference;
+  render.aovs = {"variance"};
+  if (reference == 0) return render;
+  if (reference == 1) render.aovs = {"object"};
+  render.error *= 0.5;
+  render.gather_rays *= options.reference_factor;
+  render.camera_samples *= options.reference_factor;
+  render.denoise = options.error > 0.0;
+  return render;
+}
 
 Comparison compare(const scenes::World& study, const scenes::Camera& camera,
                    const CompareOptions& options, const raytrace::StageListener& listen) {

@@ -32,6 +32,9 @@ struct CompareOptions {
       distributed_over;  // an [[area]], which also gets the Earth's lights; empty: only its disc
   radiosity::SolveOptions solver;
   std::uint64_t seed = 1;
+  // Of the whole comparison; 0: none. Pictures end when their share of it is used up, half of the
+  // time for the two references; solves are not cut short.
+  double time_limit_s = 0.0;
 };
 
 // An approximation is misleading for a target if its luminance is wrong by more than this factor,
@@ -86,13 +89,19 @@ struct Comparison {
   ObjectMap map;
   radiosity::SolveReport solution;  // at the scene's settings
   std::size_t reference_patches = 0;
-  double reference_noise = 0.0;  // noise_of_mean of the references
-  bool wide_sources = true;      // the scene has sources for distributed lights
+  double reference_noise = 0.0;      // noise_of_mean: what the reference itself is uncertain by
+  std::vector<std::string> stopped;  // methods whose pictures the time limit ended
+  bool wide_sources = true;          // anything for distributed lights to stand for
   [[nodiscard]] const MethodResult& reference() const { return methods.front(); }
 };
 
-// Except for seconds, the same values for the same options and seed on any number of threads.
-// Throws as compare_methods and raytrace::earth_area do.
+// One picture of it: the settings of method `method`; reference: 0, or 1 or 2 of a reference.
+[[nodiscard]] raytrace::RenderOptions compare_picture(const CompareOptions& options,
+                                                      const Method& method,
+                                                      std::uint64_t reference = 0);
+
+// Without a time limit and seconds apart, the same values for the same options and seed on any number of threads. Throws as
+// compare_methods and raytrace::earth_area do.
 [[nodiscard]] Comparison compare(const scenes::World& scene, const scenes::Camera& camera,
                                  const CompareOptions& options,
                                  const raytrace::StageListener& listen = {});

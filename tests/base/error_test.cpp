@@ -37,21 +37,5 @@ TEST(Error, PartsAreThoseItWasMadeOf) {
   EXPECT_EQ(Error(Blame::Work, "--part", "found").parts().where.file, "--part");
 }
 
-TEST(Error, EditDistanceIsAMetricOnSmallWords) {
-  EXPECT_EQ(edit_distance("", ""), 0U);
-  EXPECT_EQ(edit_distance("gain", ""), 4U);
-  EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);  // two substitutions, one insertion
-  EXPECT_EQ(edit_distance("sitting", "kitten"), 3U);
-}
-
-TEST(Error, NearestWordFindsTheMisspeltKeyAndNotAStranger) {
-  const std::vector<std::string> keys = {"gain_max", "gamma", "glare"};
-  EXPECT_EQ(nearest_word("gama", keys), "gamma");
-  EXPECT_EQ(nearest_word("max_gain_db_of_it", keys), "");
-  const std::vector<std::string> cameras = {"A", "B"};
-  EXPECT_EQ(nearest_word("b", cameras), "B");
-  EXPECT_EQ(nearest_word("Z", cameras), "");
-}
-
 }  // namespace
 }  // namespace earthshine::base

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Invalid cameras are refused with their position; pixel filters."""
+import json
 import unittest
 
 import exr
@@ -56,6 +57,27 @@ class Cameras(program.Case):
         self.done("render", "ball.toml", "-o", "a.exr", "-q", "--set", "material.paint.two_sided=true")
         self.write("scene.toml", ROOM)
         self.done("render", "scene.toml", "-o", "a.exr", "-q")
+
+    def test_of_several_cameras_those_inside_a_body_are_skipped(self):
+        """Exit code 3: the others are drawn."""
+        self.write("ball.toml", program.BALL.replace("position = [3, -3, 2]", "position = [0.1, 0, 0.8]"))
+        run = self.run_program("render", "ball.toml", "--camera", "all", "-o", "a.exr", "--size", "16x16", "--json")
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.assertEqual([report["camera"] for report in json.loads(run.stdout)], ["above"])
+        self.says(run.stderr, "skipped: ", 'camera "A"', '"ball"', "cameras inside a body were skipped: A")
+        self.assertFalse((self.folder / "a-A.exr").exists())
+        self.done("render", "ball.toml", "--camera", "above", "-o", "b.exr", "--size", "16x16")
+        self.assertEqual(exr.read(self.folder / "a-above.exr")[3], exr.read(self.folder / "b.exr")[3])
+        self.says(self.refused("render", "ball.toml", "--camera", "A", "-o", "c.exr"), 'camera "A"')  # no other
+
+    def test_a_study_skips_cameras_inside_a_body(self):
+        self.write("ball.toml", program.BALL.replace("position = [3, -3, 2]", "position = [0.1, 0, 0.8]"))
+        run = self.run_program("study", "visibility", "ball.toml", "-o", "v", "--size", "16x16", "--json")
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.says(run.stderr, "cameras inside a body were skipped: A")
+        study = json.loads(run.stdout)
+        self.says(json.dumps(study), "is inside a body and was skipped")
+        self.assertEqual([camera["name"] for camera in study["cameras"]], ["above"])
 
     def test_overrides_have_their_place_too(self):
         self.write("scene.toml", ROOM)

@@ -177,7 +177,7 @@ class Output(program.Case):
     def test_progress_bar_on_a_terminal_only(self):
         text = self.on_a_terminal()
         self.assertIn("render", text)
-        self.assertRegex(text, r"\r\x1b\[2Krender A +\d+ %")
+        self.assertRegex(text, r"\r\x1b\[2Kcamera A +\d+ %")
         self.assertEqual(self.on_a_terminal("--quiet"), ".")
         self.assertNotIn("\r", self.run_program("render", "ball.toml", "-o", "a.exr").stderr)
 

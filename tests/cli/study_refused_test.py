@@ -33,7 +33,7 @@ class Refused(Case):
             self.write("still.toml", still.replace("[earth]\n", earth))
             self.says(self.orbit(scene="still.toml"), "still.toml: has no [orbit]", "altitude_km")
         self.write("inside.toml", BAY.replace("position = [0, 0, 6]", "position = [0, 0, 0.3]"))
-        self.says(self.orbit(scene="inside.toml"), "box")
+        self.says(self.orbit("--camera", "B", scene="inside.toml"), "box")
         self.write("blind.toml", BAY.split("[[camera]]")[0])
         self.says(self.orbit(scene="blind.toml"), "camera")
         for altitude in ("0", "-400", "nan"):

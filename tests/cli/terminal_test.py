@@ -1,9 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Control characters in names of files and objects, and a closed terminal."""
 import csv
+import fcntl
 import io
 import os
+import pty
+import re
+import struct
 import subprocess
+import termios
+import time
 import unittest
 
 import exr
@@ -90,6 +96,85 @@ class Terminal(program.Case):
                                stdout=subprocess.DEVNULL, stderr=write_end)
         os.close(write_end)
         self.assertEqual(run.returncode, 2)
+
+
+class AtTerminal(program.Case):
+    """Both streams are a terminal, which wraps lines where the program does not."""
+
+    def on_terminal(self, columns, *call):
+        """What the program wrote, as (seconds since its start, text)."""
+        command = [program.PROGRAM, *call]
+        start = time.monotonic()
+        child, screen = pty.fork()
+        if child == 0:
+            try:
+                fcntl.ioctl(1, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+                os.chdir(self.folder)
+                os.execv(command[0], command)
+            finally:
+                os._exit(127)
+        written = []
+        while True:
+            try:
+                data = os.read(screen, 1 << 16)
+            except OSError:  # the child closed its end
+                break
+            if not data:
+                break
+            written.append((time.monotonic() - start, data.decode()))
+        os.close(screen)
+        self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 0, written)
+        return written
+
+    def lines(self, columns, *call):
+        """Those that stay, without the progress line."""
+        text = "".join(text for _, text in self.on_terminal(columns, *call))
+        return [re.split(r"\x1b\[2K", line.rstrip("\r"))[-1].lstrip("\r") for line in text.split("\n")]
+
+    def test_results_and_notes_wrap_between_words(self):
+        self.write("ball.toml", program.BALL)
+        narrow = self.lines(50, "render", "ball.toml", "-o", "a.exr", "--size", "16x16", "--error", "0.3")
+        self.assertLessEqual(max(map(len, narrow)), 50)
+        self.says(" ".join(" ".join(narrow).split()), "gather rays and", "camera samples a pixel; noise")
+        for call in (("inspect", "ball.toml"), ("plan", "ball.toml"), ("solve", "ball.toml")):
+            wide, narrow = self.lines(400, *call), self.lines(50, *call)
+            self.assertLessEqual(max(len(line) for line in narrow if " " in line.strip()), 50, call)
+            longest = max(wide, key=len)
+            self.assertIn(longest.split()[-1], " ".join(narrow).split())  # no word is cut
+
+    def test_json_is_not_wrapped(self):
+        self.write("ball.toml", program.BALL)
+        self.assertEqual(self.lines(40, "inspect", "ball.toml", "--json"), self.lines(400, "inspect", "ball.toml", "--json"))
+
+    def test_each_camera_is_named_with_its_file(self):
+        self.write("ball.toml", program.BALL)
+        text = self.run_program("render", "ball.toml", "--camera", "all", "-o", "a.exr", "--png", "b.png", "--size", "16x16").stderr
+        self.says(text, "camera A: a-A.exr, b-A.png\n", "camera above: a-above.exr, b-above.png\n")
+        self.assertEqual(text.count("form factors"), 1)  # which serve both
+
+    def progress(self, columns, *call):
+        """(seconds, share, seconds to go) of each drawing of the progress line, and its longest."""
+        drawn, longest = [], 0
+        for seconds, text in self.on_terminal(columns, *call):
+            for line in re.findall(r"[^\r\n\x1b]* s, about [^\r\n\x1b]* to go", text):
+                line = re.sub(r"^\[2K", "", line)
+                longest = max(longest, len(line))
+                share, rest = re.search(r"(\d+) % .* about (.*) to go", line).groups()
+                units = {"h": 3600, "min": 60, "s": 1}
+                drawn.append((seconds, int(share), sum(int(n) * units[u] for n, u in re.findall(r"(\d+) (h|min|s)", rest))))
+        return drawn, longest
+
+    def test_progress_of_several_pictures_never_falls(self):
+        long_name = "a-long-name-" * 12 + ".toml"
+        self.write(long_name, program.BALL)
+        for columns, call in ((60, ("render", long_name, "--camera", "all", "-o", "a.exr", "--size", "48x48", "--error", "0.01")),
+                              (60, ("study", "visibility", long_name, "-o", "v", "--size", "48x48", "--error", "0.03"))):
+            drawn, longest = self.progress(columns, *call)
+            shares = [share for _, share, _ in drawn]
+            self.assertGreater(len(drawn), 3)
+            self.assertEqual(shares, sorted(shares))
+            self.assertLess(shares[0], 60)
+            self.assertLess(longest, columns)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ class Help(program.Case):
     def test_each_command_has_help(self):
         for command in COMMANDS:
             text = self.done(command, "--help")
-            self.says(text, "As with every command:", "-j, --threads", "--seed", "-q, --quiet")
+            self.says(text, "General:", "-j, --threads", "--seed", "-q, --quiet")
         self.says(self.done("render", "-h"), "--camera", "--size", "--png", "--cctv", "--indirect",
                   "--distributed-lights", "--error", "--set", "--aov", "--per-light", "--timings",
                   "--json", "radiosity", "distributed")
@@ -31,7 +31,11 @@ class Help(program.Case):
         self.says(" ".join(self.done("render", "--help").split()),
                   "--indirect HOW radiosity (default), distributed (many lights, no interreflection), none, paths (slow reference)")
         # One name with two meanings: output here, input there.
-        self.assertRegex(self.done("render", "--help"), r"(?s)What is written:.*--cctv FILE")
+        self.assertRegex(self.done("render", "--help"), r"(?s)Output:.*--cctv FILE")
+
+    def test_options_that_do_nothing_are_not_offered(self):
+        self.says(self.refused("inspect", "box.toml", "--error", "0.1"), 'unknown option "--error"')
+        self.says(self.done("report", "--help"), "[OPTIONS] DIR\n", "  DIR  ")
 
     def test_version(self):
         self.assertRegex(self.done("--version"), r"^earthshine \d+\.\d+\.\d+\n$")
@@ -63,6 +67,17 @@ class WrongCalls(program.Case):
                   'unknown option "--camra"', 'did you mean "--camera"?')
         self.says(self.refused("solve", "box.toml", "--seeds=3"), 'unknown option "--seeds"', '"--seed"')
 
+    def test_unknown_option_names_one_of_the_same_meaning_or_lists_all(self):
+        self.says(self.refused("render", "box.toml", "-o", "a.exr", "--samples", "64"), 'did you mean "--error"?')
+        text = self.refused("render", "box.toml", "-o", "a.exr", "--sparkle")
+        self.says(text, 'unknown option "--sparkle"', "--camera", "--png", "--indirect")
+        self.assertNotIn("did you mean", text)
+
+    def test_an_error_in_percent_is_recognised(self):
+        for call in ("render", "solve"):
+            self.says(self.refused(call, "box.toml", "-o", "a", "--error", "5"), "5 means 500 %; did you mean 0.05?")
+        self.says(self.refused("render", "box.toml", "-o", "a", "--error", "500"), "above 0 and at most 1")
+
     def test_unknown_option_comes_before_missing_arguments(self):
         self.says(self.refused("render", "--pgn", "a.png"), '"--pgn"', '"--png"')
 
@@ -81,7 +96,7 @@ class WrongCalls(program.Case):
             self.says(self.refused("inspect", "box.toml", option, value), "whole number")
         for size in ("512", "0x8", "8x", "x8", "8x8x8", "8X8", "-8x8", "99999x8"):
             self.says(self.refused("render", "box.toml", "-o", "a.exr", "--size", size), "--size")
-        for error in ("small", "0", "-1", "2", "0.1x", "nan"):
+        for error in ("small", "0", "-1", "0.1x", "nan"):
             self.says(self.refused("solve", "box.toml", "--error", error), f'--error: "{error}" is not a number above 0 and at most 1')
         self.refused("render", "box.toml", "-o", "a.exr", "--distributed-lights", "0")
 

@@ -80,6 +80,19 @@ TEST(PowerLaw, TwoPointsHaveALineWithoutStandardError) {
   EXPECT_FALSE(law->exponent_error);
 }
 
+TEST(PowerLaw, HoldsOnlyWhereThePointsShowIt) {
+  EXPECT_TRUE(fit_power_law(points_of(0.3, 0.5, 0.0, 6))->holds());
+  EXPECT_TRUE(fit_power_law(points_of(0.5, 0.7, 0.01, 7))->holds());
+  // Two points fit any line; a fall by 10^9.9 in a decade of samples is chance, not a law; a rise
+  // and a constant are no convergence.
+  EXPECT_FALSE(fit_power_law({{10.0, 0.2}, {1000.0, 0.02}})->holds());
+  EXPECT_FALSE(fit_power_law({{4.0, 1.0}, {8.0, 1e-3}, {16.0, 1e-6}})->holds());
+  EXPECT_FALSE(fit_power_law(points_of(0.3, -0.25, 0.0, 6))->holds());
+  EXPECT_FALSE(fit_power_law(points_of(0.3, 0.0, 0.0, 6))->holds());
+  // Residuals of factors 0.1, 10: ln 10 / (ln 4 sqrt(5)) = 0.74, more than the 0.25 allowed.
+  EXPECT_FALSE(fit_power_law({{4.0, 1.0}, {16.0, 0.05}, {64.0, 1.0}, {256.0, 0.02}})->holds());
+}
+
 TEST(PowerLaw, NothingIsFittedToOnePlaceOrToZeroErrors) {
   EXPECT_FALSE(fit_power_law({}));
   EXPECT_FALSE(fit_power_law({{4.0, 0.1}}));

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/suggest.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace earthshine::base {
+namespace {
+
+char small(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; }
+
+// Words of one meaning in scene files and calls of this program and of others. The first that a
+// candidate has is suggested.
+const std::vector<std::vector<std::string>>& synonyms() {
+  static const std::vector<std::vector<std::string>> all = {
+      {"flux", "intensity", "power", "lumen", "lumens", "watt", "watts", "brightness", "strength"},
+      {"samples", "spp", "sample", "rays", "quality", "accuracy", "precision", "noise", "error"},
+      {"position", "origin", "pivot", "location", "translate", "translation", "offset", "place"},
+      {"rotate", "rotation", "orientation", "euler", "angle"},
+      {"size", "resolution", "dimensions", "width", "height"},
+      {"look", "target", "lookat", "aim", "towards", "direction"},
+      {"output", "out", "outfile", "file", "save", "write"},
+      {"threads", "jobs", "cores", "cpus", "processes"},
+      {"fov", "focal", "lens", "zoom"},
+      {"reflect", "reflectance", "albedo", "diffuse", "colour", "color", "kd"},
+      {"emit", "emission", "emissive", "radiance", "luminance"},
+      {"exposure", "iso", "gain", "brightness"},
+      {"mesh", "model", "geometry", "obj", "file"},
+      {"scale", "unit", "units", "size"},
+      {"time", "timeout", "limit", "budget", "seconds"},
+      {"camera", "view", "viewpoint", "eye"},
+      {"quiet", "silent", "verbose"},
+      {"light", "lamp", "lights", "lamps"},
+      {"object", "body", "part", "group"},
+  };
+  return all;
+}
+
+// "gather_rays" has "rays", "--time-limit" has "time".
+bool has_word(std::string_view candidate, std::string_view word) {
+  while (!candidate.empty()) {
+    const std::size_t end = std::min(candidate.find_first_of("_-. "), candidate.size());
+    if (edit_distance(candidate.substr(0, end), word) == 0) return true;
+    candidate.remove_prefix(std::min(end + 1, candidate.size()));
+  }
+  return false;
+}
+
+// Without the dashes of an option.
+std::string_view bare(std::string_view word) {
+  while (word.starts_with('-')) word.remove_prefix(1);
+  return word;
+}
+
+// A slip of the keys is one edit in a short word and two in a longer one.
+std::size_t most_edits(std::size_t length) { return length < 4 ? 1 : length < 10 ? 2 : 3; }
+
+}  // namespace
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before, last(b.size() + 1), row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    before = std::exchange(last, row);
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const bool same = small(a[i]) == small(b[j]);
+      row[j + 1] = std::min({last[j + 1] + 1, row[j] + 1, last[j] + (same ? 0 : 1)});
+      const bool exchanged =
+          i > 0 && j > 0 && small(a[i]) == small(b[j - 1]) && small(a[i - 1]) == small(b[j]);
+      if (exchanged) row[j + 1] = std::min(row[j + 1], before[j - 1] + 1);
+    }
+  }
+  return row[b.size()];
+}
+
+std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
+  const std::string_view wrong = bare(word);
+  std::size_t best = most_edits(wrong.size()) + 1;
+  std::string found;
+  for (const std::string& candidate : candidates) {
+    const std::string_view right = bare(candidate);
+    const std::size_t distance = edit_distance(wrong, right);
+    // Words that have hardly a letter in common are not meant.
+    if (distance < best && 2 * distance <= std::max(wrong.size(), right.size()) &&
+        distance < right.size()) {
+      best = distance;
+      found = candidate;
+    }
+  }
+  if (!found.empty()) return found;
+  for (const std::string& candidate : candidates) {
+    if (wrong.size() > 2 && bare(candidate).starts_with(wrong)) return candidate;
+  }
+  for (const std::string& candidate : candidates) {
+    if (has_word(bare(candidate), wrong)) return candidate;
+  }
+  for (const std::vector<std::string>& alike : synonyms()) {
+    if (std::none_of(alike.begin(), alike.end(),
+                     [&](const std::string& one) { return has_word(wrong, one); })) {
+      continue;
+    }
+    for (const std::string& one : alike) {
+      for (const std::string& candidate : candidates) {
+        if (has_word(bare(candidate), one)) return candidate;
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace earthshine::base
