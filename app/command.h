@@ -89,8 +89,7 @@ struct SceneInput {
   [[nodiscard]] bool wants_error() const;
 };
 
-// What could be done is done and written: not to the error that the call wants, or not for all of
-// its cameras. Exit code 3.
+// The results are written, but not to the wanted error or not for all cameras: exit code 3.
 struct StoppedShort : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -140,7 +139,7 @@ void check_input(LoadedScene& loaded, const scenes::RayQuery& query, const scene
 // Throws StoppedShort unless `skipped`, names, is empty.
 void check_skipped(const std::vector<std::string>& skipped);
 
-// Both throw base::Error (Input) where there is none. named_at: where a file or an option names it.
+// Both throw base::Error (Input) without such a camera. named_at: place in a file or option.
 [[nodiscard]] const scenes::Camera& first_camera(const scenes::Scene& scene);
 [[nodiscard]] const scenes::Camera& choose_camera(const scenes::Scene& scene,
                                                   const std::string& name,

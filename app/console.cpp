@@ -135,7 +135,7 @@ void print(std::string_view text) {
 
 void note(std::string_view line) {
   if (silent_now) return;
-  if (some_note_was_lost) return;  // nobody listens; a full pipe would wait once more
+  if (some_note_was_lost) return;  // no reader; a full pipe would block again
   const std::lock_guard lock(status_mutex);
   wipe_status();
   const std::size_t columns = terminal_columns(STDERR_FILENO);

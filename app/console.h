@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program's two voices: results on standard output, everything else on standard error. What
-// names of files and things could do to a terminal is taken out here (base/error.h), once for all.
-// On a terminal long lines are broken between words.
+// Console output: results on standard output, everything else on standard error. Control characters
+// in names are removed here (base/error.h). On a terminal long lines are broken between words.
 #pragma once
 
 #include <array>
@@ -19,10 +18,10 @@ void print(std::string_view text);
 // Lines of more than `columns` characters, broken at blanks; what follows is indented two more.
 [[nodiscard]] std::string wrapped_at_words(std::string_view text, std::size_t columns);
 
-// Columns of the terminal that a stream goes to; 0: it goes to none.
+// Columns of the terminal of a stream; 0: the stream is no terminal.
 [[nodiscard]] std::size_t terminal_columns(int stream);
 
-// One line on standard error. Work goes on where nobody listens any more.
+// One line on standard error. Ignores write errors.
 void note(std::string_view line);
 
 // note() for signal handlers, with fixed texts only. Writes nothing if it would block.
@@ -31,13 +30,13 @@ void note_in_handler(std::string_view line) noexcept;
 // For a process that is not the first of several: suppresses all output.
 void be_silent(bool silent);
 
-// Whether notes go to a terminal, and not to a file.
+// Whether standard error is a terminal.
 [[nodiscard]] bool notes_are_on_a_terminal();
 
-// The line at the foot of the terminal, which notes and results take the place of; "" wipes it.
+// The status line at the bottom of the terminal. Notes and results replace it; "" removes it.
 void show_status(std::string_view line);
 
-// Whether a note did not arrive, for the exit code: what was not said is not done.
+// Whether a note was lost, for the exit code.
 [[nodiscard]] bool lost_a_note();
 
 // "1 h 02 min", "1 min 05 s", "12.3 s" or "0.004 s".
@@ -46,7 +45,7 @@ void show_status(std::string_view line);
 // "812", "25.3 k", "1.2 M", "3.4 G".
 [[nodiscard]] std::string short_count(double count);
 
-// Of Ctrl-C, of a queue that wants its machine back, and of a terminal that closes.
+// Signals of Ctrl-C, of batch queues, and of a closed terminal.
 inline constexpr std::array ending_signals{SIGINT, SIGTERM, SIGHUP};
 
 // Handles Ctrl-C during a picture: the first signal requests a stop with partial results, the

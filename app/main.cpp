@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the command line, runs one command, turns what went wrong into one line and an exit code:
-// 0 done, 1 the work failed, 2 the call or the scene is wrong, 3 done in part (StoppedShort).
+// Parses the command line, runs one command, and converts errors to one line and an exit code: 0
+// success, 1 the work failed, 2 the call or the scene is wrong, 3 done in part (StoppedShort).
 #include <fmt/format.h>
 
 #include <algorithm>
