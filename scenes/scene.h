@@ -119,6 +119,7 @@ struct SurfaceHealth {
 struct Object {
   std::string name;
   bool target = false;  // visibility studies measure it
+  std::string joint;    // that it hangs on; empty: none
   // Against the cameras; pictures show it where it stands, studies add what a tube's lag makes of
   // it.
   Vec3 velocity_m_s{0.0};
@@ -181,7 +182,17 @@ struct Sun {
   double angular_radius_deg = 0.2666;
 };
 
+// A point far away; its light as it arrives at the spacecraft at the scene's moment.
+struct Moon {
+  Vec3 direction{0.0, 0.0, 1.0};  // unit, toward the Moon
+  Rgb illuminance_lx{0.0};        // at normal incidence, nothing in front of it
+  double phase_deg = 0.0;         // Sun, Moon, Earth: 0 full, 180 new
+  bool hidden = false;            // behind the Earth: it lights the Earth alone
+};
+
 enum class EarthModel { Lambert, Uniform };
+
+class AlbedoGrid;  // scenes/sky/albedo_grid.h
 
 // Albedo by latitude, a0 + a1 P1(sin latitude) + a2 P2(sin latitude), P1 and P2 Legendre's
 // polynomials, between 0 and 1: Knocke, Ries and Tapley, "Earth radiation pressure effects on
@@ -201,6 +212,8 @@ struct Earth {
   Rgb albedo{0.3};
   Rgb radiance{0.0};                          // uniform model, cd/m^2
   std::optional<LatitudeAlbedo> by_latitude;  // lambert model: `albedo` times this
+  std::shared_ptr<const AlbedoGrid> grid;     // lambert model: `albedo` times this; null: none
+  glm::dmat3 to_ground{1.0};                  // of a grid: the scene's axes to ITRF's
 };
 
 // Attitudes against time; scenes/sky/attitude_file.h says how a turn is to be read.
@@ -228,7 +241,7 @@ struct Orbit {
   std::string attitude = "bay-to-earth";  // empty: by the files
   std::string inertial_as = "bay-to-earth";  // } of attitude "inertial": the pose that is kept
   double inertial_at_deg = 0.0;              // } and where the spacecraft takes it
-  std::shared_ptr<const OrbitFiles> files;  // null: none
+  std::shared_ptr<const OrbitFiles> files;   // null: none
   double inclination_deg = 0.0;
   double noon_argument_deg = 0.0;  // argument of latitude at orbit noon
 };
@@ -283,6 +296,7 @@ struct Quality {
 };
 
 struct SkyParts;  // sky_cells.h
+struct Linkage;   // scenes/time/linkage.h: joints and tracks
 
 struct Scene {
   std::filesystem::path path;
@@ -300,8 +314,10 @@ struct Scene {
   std::vector<Area> areas;
   std::optional<Sun> sun;
   std::optional<Earth> earth;
+  std::optional<Moon> moon;
   std::optional<Orbit> orbit;                 // Sun and Earth are where it has them
   std::shared_ptr<const SkyParts> sky_parts;  // of studies alone
+  std::shared_ptr<const Linkage> linkage;     // null: nothing moves
   Rgb ambient_radiance{0.0};                  // k_a I_a with k_a = diffuse; 0: off
   std::vector<Camera> cameras;
   std::vector<SettingTable> cctv;

@@ -13,9 +13,8 @@ namespace earthshine::app {
 // Conditions are numbered setting by setting, place by place.
 [[nodiscard]] studies::ConditionAt condition_at(const StudyPart& part, std::size_t condition);
 
-// In the order of StudyPart: all places of the first lamp setting, then those of the second. Each
-// with that number of its scene.
-[[nodiscard]] std::vector<ConditionEntry> conditions_of(const StudyPart& part, std::size_t scene);
+// In the order of StudyPart: all places of the first lamp setting, then those of the second.
+[[nodiscard]] std::vector<ConditionEntry> conditions_of(const StudyPart& part);
 
 // What was found of the scene's targets in each condition, in their order; none where a condition
 // was not reached.

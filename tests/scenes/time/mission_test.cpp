@@ -47,7 +47,7 @@ Sky sky_of(const Ellipse& circle, double s) {
 // pi -+ acos(cos(h + rho) / cos beta) from orbit noon, and is gone at the same with h - rho. The Sun
 // moves 0.6 s worth of orbit in half a turn, so that the position is that of the time itself.
 TEST_F(MissionScene, EclipsesOfACircleAreWhereTheClosedFormHasThem) {
-  const Scene scene = read();
+  const Scene scene = read("earth_shape = \"sphere\"\n");
   const Mission& mission = *mission_of(scene);
   const double rho = base::radians(scene.sun->angular_radius_deg);
   const double h = std::asin(base::earth_radius_m / circle.semi_major_m);
