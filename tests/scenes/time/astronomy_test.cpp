@@ -50,8 +50,8 @@ TEST(Astronomy, SunAgreesWithTheAlmanacsLowPrecisionFormulas) {
       const Instant t = of_tt(first) + 30.4 * 86400.0 * month;
       const double n = (t - j2000) / 86400.0;
       const double g = base::radians(357.528 + 0.9856003 * n);
-      const double longitude = base::radians(280.460 + 0.9856474 * n + 1.915 * std::sin(g) +
-                                             0.020 * std::sin(2.0 * g));
+      const double longitude =
+          base::radians(280.460 + 0.9856474 * n + 1.915 * std::sin(g) + 0.020 * std::sin(2.0 * g));
       const double obliquity = base::radians(23.439 - 0.0000004 * n);
       const Vec3 formula(std::cos(longitude), std::cos(obliquity) * std::sin(longitude),
                          std::sin(obliquity) * std::sin(longitude));
