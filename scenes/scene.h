@@ -118,8 +118,9 @@ struct SurfaceHealth {
 struct Object {
   std::string name;
   bool target = false;  // visibility studies measure it
-  // Relative to the cameras. Pictures show the object at its position; studies add the effect of a
-  // camera tube's lag.
+  std::string joint;    // that it hangs on; empty: none
+  // Against the cameras; pictures show it where it stands, studies add what a tube's lag makes of
+  // it.
   Vec3 velocity_m_s{0.0};
   Orient orient = Orient::Mended;
   std::uint32_t first_triangle = 0;
@@ -180,10 +181,20 @@ struct Sun {
   double angular_radius_deg = 0.2666;
 };
 
+// A point far away; its light as it arrives at the spacecraft at the scene's moment.
+struct Moon {
+  Vec3 direction{0.0, 0.0, 1.0};  // unit, toward the Moon
+  Rgb illuminance_lx{0.0};        // at normal incidence, nothing in front of it
+  double phase_deg = 0.0;         // Sun, Moon, Earth: 0 full, 180 new
+  bool hidden = false;            // behind the Earth: it lights the Earth alone
+};
+
 enum class EarthModel { Lambert, Uniform };
 
-// Albedo by latitude, a0 + a1 P1(sin latitude) + a2 P2(sin latitude), clamped to 0 to 1, with
-// Legendre polynomials P1 and P2: Knocke, Ries and Tapley, "Earth radiation pressure effects on
+class AlbedoGrid;  // scenes/sky/albedo_grid.h
+
+// Albedo by latitude, a0 + a1 P1(sin latitude) + a2 P2(sin latitude), P1 and P2 Legendre's
+// polynomials, between 0 and 1: Knocke, Ries and Tapley, "Earth radiation pressure effects on
 // satellites", AIAA/AAS 1988, with a1 = 0.10 cos(day's angle from 22 December).
 struct LatitudeAlbedo {
   double a0 = 0.34;
@@ -199,7 +210,9 @@ struct Earth {
   EarthModel model = EarthModel::Lambert;
   Rgb albedo{0.3};
   Rgb radiance{0.0};                          // uniform model, cd/m^2
-  std::optional<LatitudeAlbedo> by_latitude;  // lambert model: factor on `albedo`
+  std::optional<LatitudeAlbedo> by_latitude;  // lambert model: `albedo` times this
+  std::shared_ptr<const AlbedoGrid> grid;     // lambert model: `albedo` times this; null: none
+  glm::dmat3 to_ground{1.0};                  // of a grid: the scene's axes to ITRF's
 };
 
 // Attitudes as a function of time; scenes/sky/attitude_file.h defines the rotations.
@@ -222,12 +235,12 @@ struct OrbitFiles {
 // frames. For a mission: the circle through the spacecraft's position at the scene's time.
 struct Orbit {
   double altitude_m = 0.0;
-  double beta_deg = 0.0;                  // elevation of the Sun above the orbital plane
-  double position_deg = 0.0;              // position of the scene; 0: orbit noon
-  std::string attitude = "bay-to-earth";  // empty: from the files
-  std::string inertial_as = "bay-to-earth";  // } attitude "inertial": the fixed attitude
-  double inertial_at_deg = 0.0;              // } and the position at which it is taken
-  std::shared_ptr<const OrbitFiles> files;  // null: none
+  double beta_deg = 0.0;                  // height of the Sun over the orbit's plane
+  double position_deg = 0.0;              // where the scene's Sun and Earth are taken; 0 orbit noon
+  std::string attitude = "bay-to-earth";  // empty: by the files
+  std::string inertial_as = "bay-to-earth";  // } of attitude "inertial": the pose that is kept
+  double inertial_at_deg = 0.0;              // } and where the spacecraft takes it
+  std::shared_ptr<const OrbitFiles> files;   // null: none
   double inclination_deg = 0.0;
   double noon_argument_deg = 0.0;  // argument of latitude at orbit noon
 };
@@ -281,6 +294,7 @@ struct Quality {
 };
 
 struct SkyParts;  // sky_cells.h
+struct Linkage;   // scenes/time/linkage.h: joints and tracks
 
 struct Scene {
   std::filesystem::path path;
@@ -298,8 +312,10 @@ struct Scene {
   std::vector<Area> areas;
   std::optional<Sun> sun;
   std::optional<Earth> earth;
-  std::optional<Orbit> orbit;                 // gives the directions of Sun and Earth
-  std::shared_ptr<const SkyParts> sky_parts;  // used by studies only
+  std::optional<Moon> moon;
+  std::optional<Orbit> orbit;                 // Sun and Earth are where it has them
+  std::shared_ptr<const SkyParts> sky_parts;  // of studies alone
+  std::shared_ptr<const Linkage> linkage;     // null: nothing moves
   Rgb ambient_radiance{0.0};                  // k_a I_a with k_a = diffuse; 0: off
   std::vector<Camera> cameras;
   std::vector<SettingTable> cctv;

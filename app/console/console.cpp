@@ -53,7 +53,8 @@ void run(const ConsoleCall& call, const Common& common) {
   std::vector<double> positions;
   if (call.positions > 0) positions = studies::even_positions(static_cast<int>(call.positions));
   const studies::StudyFile study = console_study(call.study, std::move(positions));
-  const std::unique_ptr<StudyPart> part = prepare_part(study, 0, common);
+  // Of a scene whose joints move: its first pose.
+  const std::unique_ptr<StudyPart> part = std::move(prepare_parts(study, 0, common).front());
   check_outputs({call.output}, part->loaded.scene.files);
   refuse_other_kind("-o", call.output, {".html"});
   if (!call.layers.empty()) {

@@ -42,7 +42,7 @@ Json presets_json() {
 
 Json places_json(const StudyPart& part) {
   Json places = Json::array();
-  for (const ConditionEntry& condition : conditions_of(part, 0)) {
+  for (const ConditionEntry& condition : conditions_of(part)) {
     places.push_back({{"position_deg", to_json(condition.position_deg)},
                       {"time_s", to_json(condition.time_s)},
                       {"sun_share", to_json(condition.sun_share)},

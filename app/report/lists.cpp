@@ -65,6 +65,8 @@ std::string conditions_table(const StudyResults& study) {
         figure(condition.time_s, Form::Count), condition.phase.empty() ? dash : condition.phase,
         figure(condition.sun_share, Form::Percent), factors_text(condition.factors),
         figure(condition.earth_error, Form::Percent));
+    if (!condition.pose.empty())
+      rows += "<tr><td class=t colspan=9>" + escaped(condition.pose) + "\n";
   }
   if (rows.empty()) return "";
   // In print the summary's columns have this information.

@@ -65,6 +65,7 @@ struct ConditionEntry {
   std::vector<Factor> factors;
   std::string others;
   Number earth_error;
+  std::string pose = {};  // of joints and tracks; "" where the scene has none
 };
 
 // A light group's share or luminance, or its factor.

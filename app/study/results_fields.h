@@ -183,6 +183,7 @@ void describe(Fields& fields, Either<ConditionEntry> auto& condition) {
   fields.factors("factors", condition.factors);
   fields("others", condition.others);
   fields("earth_error", condition.earth_error);
+  fields.if_any("pose", condition.pose);
 }
 
 template <class Fields>

@@ -21,10 +21,10 @@ Json moment_text(const std::optional<Instant>& t) {
 
 // From the scene's time to the last time of [time], or over one revolution, within the states.
 Json eclipses_of(const scenes::Scene& scene, const scenes::Mission& mission) {
-  const Instant start = mission.time.start;
-  const Instant stop = mission.has_span
-                           ? std::min(mission.time.stop, start + longest_eclipse_span_s)
-                           : start + scenes::period_at(mission, start);
+  const Instant start = mission.moment;
+  const Instant stop = mission.has_span ? std::min(std::max(mission.time.stop, start),
+                                                   start + longest_eclipse_span_s)
+                                        : start + scenes::period_at(mission, start);
   Json list = Json::array();
   for (const scenes::TrajectorySegment& segment : mission.trajectory->segments) {
     const Instant from = std::max(start, segment.first_useful);
@@ -49,7 +49,7 @@ Json mission_facts(const scenes::Scene& scene) {
   const scenes::Mission* const mission = scenes::mission_of(scene);
   if (mission == nullptr) return {};
   const scenes::Trajectory& trajectory = *mission->trajectory;
-  const Instant start = mission->time.start;
+  const Instant start = mission->moment;
   const scenes::MissionState state = scenes::mission_state(*mission, start);
   Json segments = Json::array();
   for (const scenes::TrajectorySegment& segment : trajectory.segments) {

@@ -14,6 +14,7 @@
 #include "raytrace/camera/camera.h"
 #include "scenes/sky/orbit.h"
 #include "scenes/text/message_text.h"
+#include "scenes/time/linkage.h"
 
 namespace earthshine::app {
 namespace {
@@ -117,37 +118,61 @@ void find_cameras(const studies::StudyFile& study, const std::vector<const scene
               (in_file ? part.path + " " : "") + found, allowed, remedy);
 }
 
-// Sun and Earth at each time.
-std::vector<studies::SkyPlace> find_moments(const studies::StudyFile& study,
-                                            const scenes::Mission& mission, scenes::Scene& sky,
-                                            StudyPart& part) {
+// The places of a study and the pose of the joints at each of them.
+struct StudyWay {
+  std::vector<studies::SkyPlace> places;
+  std::vector<double> positions_deg, times_s;
+  std::vector<scenes::Instant> moments;
+  std::vector<std::vector<scenes::JointState>> joints;  // of moments, where any moves
+
+  [[nodiscard]] StudyWay part(std::size_t first, std::size_t last) const {
+    const auto cut = [&](const auto& list) {
+      if (list.empty()) return list;
+      return std::decay_t<decltype(list)>(list.begin() + static_cast<std::ptrdiff_t>(first),
+                                          list.begin() + static_cast<std::ptrdiff_t>(last));
+    };
+    return {cut(places), cut(positions_deg), cut(times_s), cut(moments), cut(joints)};
+  }
+};
+
+// Sun and Earth, and the pose of all joints, at each moment.
+StudyWay find_moments(const studies::StudyFile& study, const scenes::Mission& mission,
+                      scenes::Scene& sky, const StudyPart& part) {
   if (!study.time && !mission.has_span) {
     refuse_way(study, part, "orbit", "has a trajectory and no [time] to go along", "",
                "Write [time] with start, stop and step");
   }
   const scenes::TimeSpan span = study.time.value_or(mission.time);
-  std::vector<studies::SkyPlace> places;
+  const scenes::Linkage* const linkage = part.loaded.scene.linkage.get();
+  StudyWay way;
   for (std::size_t k = 0; k < span.count(); ++k) {
     scenes::move_to_moment(sky, span.at(k));
-    places.push_back(studies::sky_of(sky));
+    way.places.push_back(studies::sky_of(sky));
     double position = sky.orbit->position_deg;
     if (k > 0) {
       // The number of full revolutions follows from the time.
       const double expected =
-          part.positions_deg.back() + 360.0 * span.step_s / scenes::period_at(mission, span.at(k));
+          way.positions_deg.back() + 360.0 * span.step_s / scenes::period_at(mission, span.at(k));
       position = expected + std::remainder(position - expected, 360.0);
     }
-    part.positions_deg.push_back(position);
-    part.times_s.push_back(span.at(k) - span.start);
-    part.moments.push_back(span.at(k));
+    way.positions_deg.push_back(position);
+    way.times_s.push_back(span.at(k) - span.start);
+    way.moments.push_back(span.at(k));
+    if (linkage != nullptr && linkage->moves()) {
+      way.joints.push_back(linkage->at(&mission, span.at(k)));
+    }
   }
-  return places;
+  return way;
 }
 
-// Sun and Earth at each position, with times.
-std::vector<studies::SkyPlace> find_places(const studies::StudyFile& study, StudyPart& part) {
+// Sun and Earth at each position, and when.
+StudyWay find_way(const studies::StudyFile& study, const StudyPart& part) {
   const scenes::Scene& scene = part.loaded.scene;
-  if (study.positions_deg.empty() && !study.time) return {studies::sky_of(scene)};
+  StudyWay way;
+  if (study.positions_deg.empty() && !study.time) {
+    way.places = {studies::sky_of(scene)};
+    return way;
+  }
   scenes::Scene sky;  // without surfaces: cheap to move
   sky.sun = scene.sun;
   sky.earth = scene.earth;
@@ -169,14 +194,13 @@ std::vector<studies::SkyPlace> find_places(const studies::StudyFile& study, Stud
                "a study with positions needs a scene with [orbit]",
                "Add [orbit] with altitude_km, or leave the positions out");
   }
-  std::vector<studies::SkyPlace> places;
   for (const double position : study.positions_deg) {
     scenes::move_along_orbit(sky, position);
-    places.push_back(studies::sky_of(sky));
-    part.positions_deg.push_back(position);
-    part.times_s.push_back(scenes::orbit_state(*scene.orbit, position).time_s);
+    way.places.push_back(studies::sky_of(sky));
+    way.positions_deg.push_back(position);
+    way.times_s.push_back(scenes::orbit_state(*scene.orbit, position).time_s);
   }
-  return places;
+  return way;
 }
 
 // Warns if the scene has light but no condition of the study does.
@@ -214,42 +238,99 @@ std::string place_text(const std::vector<double>& positions_deg,
       {std::round(moments[k - 1].tai_s + share * (moments[k] - moments[k - 1]))});
 }
 
-std::unique_ptr<StudyPart> prepare_part(const studies::StudyFile& study, std::size_t index,
-                                        const Common& common) {
-  auto part = std::make_unique<StudyPart>();
-  part->id = fmt::format("s{}", index);
-  part->path = study.scenes[index].lexically_normal().string();
-  for (const char* key : {"scene", "scenes"}) {
-    if (study.where.contains(key)) base::check_input_file(part->path, study.place(key));
+namespace {
+
+// Runs of moments in one pose of all joints: where each begins, and the end of all.
+std::vector<std::size_t> runs_of(const StudyWay& way) {
+  std::vector<std::size_t> begins = {0};
+  for (std::size_t k = 1; k < way.joints.size(); ++k) {
+    const auto same = [](const scenes::JointState& a, const scenes::JointState& b) {
+      return a.pose == b.pose;
+    };
+    if (!std::ranges::equal(way.joints[k - 1], way.joints[k], same)) begins.push_back(k);
   }
-  SceneInput input{part->path, study.overrides};
+  begins.push_back(way.places.size());
+  return begins;
+}
+
+SceneInput input_of(const studies::StudyFile& study, const StudyPart& part) {
+  SceneInput input{part.path, study.overrides};
   if (study.where.count("set") > 0) input.overrides_at = study.place("set");
-  part->loaded = load(input, common.quiet);
-  scenes::Scene& scene = part->loaded.scene;
+  return input;
+}
+
+// The Moon moves through the sky of most attitudes, and a lamp of a study does not.
+void leave_moon_out(StudyPart& part, bool quiet) {
+  scenes::Scene& scene = part.loaded.scene;
+  scene.moon.reset();
+  std::erase_if(scene.lamps, [](const scenes::Lamp& lamp) { return lamp.name == "moon"; });
+  scene.warnings.push_back("moonlight is left out of a study with several places in one pose");
+  if (!quiet) note("warning: " + scene.warnings.back());
+}
+
+// The scene's surfaces, cameras and lights for that way.
+void fill_part(const studies::StudyFile& study, const Common& common, StudyWay way,
+               StudyPart& part) {
+  scenes::Scene& scene = part.loaded.scene;
   add_cctv(study, scene);
   mark_targets(study, scene);
   for (const scenes::Object& object : scene.objects) {
-    if (object.target) part->targets.push_back(object.name);
+    if (object.target) part.targets.push_back(object.name);
   }
-  check_wanted(study, *part);
+  check_wanted(study, part);
+  if (scene.linkage) part.pose = scenes::pose_text(scene);
+  if (scene.moon && way.places.size() > 1) leave_moon_out(part, common.quiet);
   scenes::SceneUse use;
   use.cameras = chosen_cameras(study, scene);
   use.moves_along_orbit = !study.positions_deg.empty() || study.time;
-  part->query = std::make_unique<const scenes::RayQuery>(scene);
-  part->skipped = skip_hidden_cameras(scene, *part->query, use.cameras, common.quiet);
-  check_input(part->loaded, *part->query, use, common.quiet);
-  find_cameras(study, use.cameras, common, *part);
-  part->basis = std::make_unique<const studies::LightBasis>(scene, find_places(study, *part),
-                                                            study.lamps, study.basis);
-  name_darkness(*part, common.quiet);
+  part.query = std::make_unique<const scenes::RayQuery>(scene);
+  part.skipped = skip_hidden_cameras(scene, *part.query, use.cameras, common.quiet);
+  check_input(part.loaded, *part.query, use, common.quiet);
+  find_cameras(study, use.cameras, common, part);
+  part.positions_deg = std::move(way.positions_deg);
+  part.times_s = std::move(way.times_s);
+  part.moments = std::move(way.moments);
+  part.basis = std::make_unique<const studies::LightBasis>(scene, std::move(way.places),
+                                                           study.lamps, study.basis);
+  name_darkness(part, common.quiet);
   scenes::Asked asked;
-  for (const StudyCamera& camera : part->cameras) asked.cameras.push_back(camera.camera);
+  for (const StudyCamera& camera : part.cameras) asked.cameras.push_back(camera.camera);
   asked.per_light = true;
-  part->basis_scene.scene = part->basis->scene();
-  part->basis_scene.groups = part->basis->groups();
-  part->basis_scene.effects =
-      scenes::find_effects(part->basis->scene(), part->basis->groups(), asked);
-  return part;
+  part.basis_scene.scene = part.basis->scene();
+  part.basis_scene.groups = part.basis->groups();
+  part.basis_scene.effects = scenes::find_effects(part.basis->scene(), part.basis->groups(), asked);
+}
+
+}  // namespace
+
+StudyParts prepare_parts(const studies::StudyFile& study, std::size_t index, const Common& common) {
+  StudyParts parts;
+  auto first = std::make_unique<StudyPart>();
+  first->id = fmt::format("s{}", index);
+  first->scene = index;
+  first->path = study.scenes[index].lexically_normal().string();
+  for (const char* key : {"scene", "scenes"}) {
+    if (study.where.contains(key)) base::check_input_file(first->path, study.place(key));
+  }
+  first->loaded = load(input_of(study, *first), common.quiet);
+  const StudyWay way = find_way(study, *first);
+  const std::vector<std::size_t> begins = runs_of(way);
+  for (std::size_t run = 0; run + 1 < begins.size(); ++run) {
+    auto part = std::make_unique<StudyPart>();
+    part->id = run == 0 ? first->id : fmt::format("{}-p{}", first->id, run);
+    part->scene = index;
+    part->path = first->path;
+    if (way.joints.empty()) {
+      part->loaded = std::move(first->loaded);
+    } else {
+      SceneInput input = input_of(study, *first);
+      input.overrides.push_back("time.moment=" + scenes::utc_text(way.moments[begins[run]]));
+      part->loaded = load(input, common.quiet || run > 0);
+    }
+    fill_part(study, common, way.part(begins[run], begins[run + 1]), *part);
+    parts.push_back(std::move(part));
+  }
+  return parts;
 }
 
 }  // namespace earthshine::app

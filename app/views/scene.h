@@ -27,10 +27,12 @@ struct StudyCamera {
   std::optional<CctvSetup> cctv;
 };
 
-// Not movable: its members refer to each other.
+// One scene, or one pose of a scene whose joints move. Not to be moved once it is made: its parts point at each other.
 struct StudyPart {
-  std::string id;    // "s0", "s1", ...
-  std::string path;  // as in the study
+  std::string id;         // "s0", "s1", ...; of a later pose of its joints "s0-p1", ...
+  std::size_t scene = 0;  // its number in the study
+  std::string path;       // as the study has it
+  std::string pose;       // of its joints and tracks, for people; empty without
   LoadedScene loaded;
   std::vector<double> positions_deg;  // empty: the scene's own position
   // Time of each position since orbit noon; along time, since the first time.
@@ -52,9 +54,12 @@ struct StudyPart {
   }
 };
 
-// Reads and checks everything in one scene that the study uses. Throws base::Error (Input) before
-// any light is computed.
-[[nodiscard]] std::unique_ptr<StudyPart> prepare_part(const studies::StudyFile& study,
-                                                      std::size_t index, const Common& common);
+using StudyParts = std::vector<std::unique_ptr<StudyPart>>;
+
+// Reads and checks everything that the study names in one of its scenes. Along time a scene with
+// moving joints is a part for each run of moments in one pose, in their order. Throws base::Error
+// (Input) before any light is computed.
+[[nodiscard]] StudyParts prepare_parts(const studies::StudyFile& study, std::size_t index,
+                                       const Common& common);
 
 }  // namespace earthshine::app

@@ -181,6 +181,33 @@ void add_configurations(const StudyPart& part, const studies::StudyFile& study,
   }
 }
 
+void add_configuration(std::vector<ViewingConfiguration>& ways, const ViewingConfiguration& way) {
+  const auto same = std::find_if(ways.begin(), ways.end(), [&](const ViewingConfiguration& w) {
+    return !w.tai_s.empty() && w.scene == way.scene && w.camera == way.camera &&
+           w.iris == way.iris && w.lamps == way.lamps;
+  });
+  if (same == ways.end()) {
+    ways.push_back(way);
+    return;
+  }
+  const auto append = [](auto& list, const auto& more) {
+    list.insert(list.end(), more.begin(), more.end());
+  };
+  append(same->detect, way.detect);
+  append(same->positions_deg, way.positions_deg);
+  append(same->tai_s, way.tai_s);
+  if (!way.tried_factors) return;
+  // The pose that needs most decides; without a factor no lamps are enough.
+  const bool needs_more =
+      !same->tried_factors ||
+      (same->least_factor && (!way.least_factor || *way.least_factor > *same->least_factor));
+  if (needs_more) {
+    same->least_factor = way.least_factor;
+    same->darkest_deg = way.darkest_deg;
+  }
+  same->tried_factors = true;
+}
+
 AnswerEntry answer_of(const studies::WantedTarget& wanted, const studies::StudyFile& study,
                       const std::vector<ViewingConfiguration>& ways) {
   Rated best;

@@ -43,7 +43,10 @@ void add_configurations(const StudyPart& part, const studies::StudyFile& study,
                         const StudyCamera& camera, const studies::BasisView& view,
                         std::vector<std::vector<ViewingConfiguration>>& ways);
 
-// The answer for a wanted target.
+// Adds one pose's configuration to that of the poses before it, or as a new one.
+void add_configuration(std::vector<ViewingConfiguration>& ways, const ViewingConfiguration& way);
+
+// What a wanted target is answered.
 [[nodiscard]] AnswerEntry answer_of(const studies::WantedTarget& wanted,
                                     const studies::StudyFile& study,
                                     const std::vector<ViewingConfiguration>& ways);

@@ -71,7 +71,7 @@ double units_of_conditions(const StudyPart& part, const StudyCamera& camera) {
   return static_cast<double>(part.conditions()) * camera.columns * camera.rows;
 }
 
-std::vector<ConditionEntry> conditions_of(const StudyPart& part, std::size_t scene) {
+std::vector<ConditionEntry> conditions_of(const StudyPart& part) {
   std::vector<ConditionEntry> conditions;
   for (std::size_t k = 0; k < part.conditions(); ++k) {
     const auto [place, setting] = condition_at(part, k);
@@ -83,11 +83,12 @@ std::vector<ConditionEntry> conditions_of(const StudyPart& part, std::size_t sce
     for (const auto& [name, factor] : lamps.factors) factors.push_back({name, factor});
     const std::string utc = part.moments.empty() ? "" : scenes::utc_text(part.moments[place]);
     const std::string where = along ? part.place_text(place) + ", " : "";
-    conditions.push_back({condition_id(part, k), scene, where + "lamps " + lamps.name, lamps.name,
-                          utc, along ? Number(part.positions_deg[place]) : Number(),
+    conditions.push_back({condition_id(part, k), part.scene, where + "lamps " + lamps.name,
+                          lamps.name, utc, along ? Number(part.positions_deg[place]) : Number(),
                           along ? Number(part.times_s[place]) : Number(),
                           sky.sun ? Number(share) : Number(), sky.sun ? phase_of(share) : "",
-                          std::move(factors), lamps.others_off ? "off" : "as-they-are", Number()});
+                          std::move(factors), lamps.others_off ? "off" : "as-they-are", Number(),
+                          part.pose});
   }
   return conditions;
 }

@@ -14,12 +14,11 @@ namespace earthshine::app {
 // Conditions are numbered by setting, then by position.
 [[nodiscard]] studies::ConditionAt condition_at(const StudyPart& part, std::size_t condition);
 
-// In the order of StudyPart: all places of the first lamp setting, then those of the second. Each
-// with that number of its scene.
 // Units of Work::Conditions (app/progress.h).
 [[nodiscard]] double units_of_conditions(const StudyPart& part, const StudyCamera& camera);
 
-[[nodiscard]] std::vector<ConditionEntry> conditions_of(const StudyPart& part, std::size_t scene);
+// In the order of StudyPart: all places of the first lamp setting, then those of the second.
+[[nodiscard]] std::vector<ConditionEntry> conditions_of(const StudyPart& part);
 
 // Results for the scene's targets in each condition, in order; no value for a condition that was
 // not reached.

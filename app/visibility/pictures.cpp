@@ -57,7 +57,13 @@ std::size_t setting_of(const StudyPart& part, const PictureWish& wish) {
   return static_cast<std::size_t>(found - settings.begin());
 }
 
-constexpr const char* same_end = "-same.png";  // with the common white
+// Whether the part has the wish's camera and place.
+bool can_draw(const StudyPart& part, const PictureWish& wish) {
+  return camera_of(part, wish.camera) != nullptr &&
+         place_of(part, wish) < part.basis->places().size();
+}
+
+constexpr const char* same_end = "-same.png";  // by one white for all
 
 // A unique file name of letters, digits, dots and dashes.
 std::string file_of(const studies::StudyFile& study, const PictureWish& wish) {
@@ -111,9 +117,13 @@ void check_pictures(const studies::StudyFile& study, const std::vector<const Stu
                         fmt::format("[[picture]] {} {}", scenes::in_quotes(wish.name), found),
                         allowed);
     };
-    const auto part = std::find_if(parts.begin(), parts.end(), [&](const StudyPart* p) {
-      return camera_of(*p, wish.camera) != nullptr;
-    });
+    auto part = std::find_if(parts.begin(), parts.end(),
+                             [&](const StudyPart* p) { return can_draw(*p, wish); });
+    if (part == parts.end()) {
+      part = std::find_if(parts.begin(), parts.end(), [&](const StudyPart* p) {
+        return camera_of(*p, wish.camera) != nullptr;
+      });
+    }
     if (part == parts.end()) {
       std::vector<std::string> names;
       for (const StudyCamera& camera : parts.front()->cameras) names.push_back(camera.camera->name);
@@ -157,13 +167,11 @@ namespace {
 // The pictures that this camera of this scene draws.
 std::vector<const PictureWish*> own_wishes(const PictureTask& task) {
   std::vector<const PictureWish*> wishes;
-  const std::string& name = task.camera.camera->name;
-  const auto first = std::find_if(task.parts.begin(), task.parts.end(), [&](const StudyPart* part) {
-    return camera_of(*part, name) != nullptr;
-  });
-  if (first == task.parts.end() || *first != &task.part) return wishes;
   for (const PictureWish& wish : task.study.pictures) {
-    if (wish.camera == name) wishes.push_back(&wish);
+    if (wish.camera != task.camera.camera->name) continue;
+    const auto first = std::find_if(task.parts.begin(), task.parts.end(),
+                                    [&](const StudyPart* part) { return can_draw(*part, wish); });
+    if (first != task.parts.end() && *first == &task.part) wishes.push_back(&wish);
   }
   return wishes;
 }

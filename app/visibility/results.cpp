@@ -31,11 +31,10 @@ std::string noise_of_conditions(const CameraFindings& found,
   return studies::noise_text(noise, names);
 }
 
-// conditions: of its scene.
-CameraEntry camera_entry(const CameraFindings& found, std::size_t scene,
-                         std::span<const ConditionEntry> conditions) {
+// conditions: of its part.
+CameraEntry camera_entry(const CameraFindings& found, std::span<const ConditionEntry> conditions) {
   const scenes::Camera& camera = *found.camera.camera;
-  CameraEntry entry{scene,
+  CameraEntry entry{found.part.scene,
                     camera.name,
                     found.camera.columns,
                     found.camera.rows,
@@ -56,11 +55,12 @@ CameraEntry camera_entry(const CameraFindings& found, std::size_t scene,
   return entry;
 }
 
-// Index of a scene's first condition.
-std::size_t first_condition(const StudyResults& results, std::size_t scene) {
+// Where a part's conditions begin.
+std::size_t first_condition(const StudyResults& results, const StudyPart& part) {
+  const std::string id = conditions_of(part).front().id;
   const auto first =
       std::find_if(results.conditions.begin(), results.conditions.end(),
-                   [&](const ConditionEntry& condition) { return condition.scene == scene; });
+                   [&](const ConditionEntry& condition) { return condition.id == id; });
   return static_cast<std::size_t>(first - results.conditions.begin());
 }
 
@@ -84,13 +84,12 @@ Json settings_of(const studies::StudyFile& study, const std::string& command, st
           {"seed", seed}};
 }
 
-// Adds warnings from loading, limitations of the solution, and effects that are not simulated.
+// What loading found and what is not simulated.
 void add_notes_of_scene(const StudyPart& part, const std::string& scene,
-                        const std::vector<std::string>& limits, std::vector<std::string>& notes) {
+                        std::vector<std::string>& notes) {
   for (const std::string& warning : part.loaded.scene.warnings) {
     notes.push_back(scene + "Found on loading: " + warning);
   }
-  for (const std::string& limit : limits) notes.push_back(scene + "Limit reached: " + limit + ".");
   const scenes::World of = part.basis_scene.world(*part.query);
   for (const std::string& missing : raytrace::not_captured(of, {})) {
     notes.push_back(scene + "Not simulated: " + missing + ".");
@@ -143,14 +142,15 @@ StudyResults begin_results(const studies::StudyFile& study,
   results.version = EARTHSHINE_VERSION;
   Json digests = Json::object();
   for (const StudyPart* part : parts) {
-    const std::size_t scene = results.scenes.size();
-    results.scenes.push_back(
-        {part->id, part->loaded.scene.name, part->path, {}, orbit_entry(part->loaded.scene)});
+    if (part->scene == results.scenes.size()) {
+      results.scenes.push_back(
+          {part->id, part->loaded.scene.name, part->path, {}, orbit_entry(part->loaded.scene)});
+    }
     digests[part->id] = scene_cache_key(part->loaded);
     for (const std::string& name : part->targets) {
       if (target_number(results, name) == results.targets.size()) results.targets.push_back(name);
     }
-    for (ConditionEntry& condition : conditions_of(*part, scene)) {
+    for (ConditionEntry& condition : conditions_of(*part)) {
       results.conditions.push_back(std::move(condition));
     }
   }
@@ -163,12 +163,23 @@ StudyResults begin_results(const studies::StudyFile& study,
 }
 
 void add_camera(StudyResults& results, const CameraFindings& found) {
-  const auto part = std::find_if(results.scenes.begin(), results.scenes.end(),
-                                 [&](const SceneEntry& s) { return s.id == found.part.id; });
-  const auto scene = static_cast<std::size_t>(part - results.scenes.begin());
-  const std::size_t camera = results.cameras.size(), first = first_condition(results, scene);
-  results.cameras.push_back(
-      camera_entry(found, scene, std::span(results.conditions).subspan(first)));
+  const std::size_t scene = found.part.scene, first = first_condition(results, found.part);
+  CameraEntry entry = camera_entry(found, std::span(results.conditions).subspan(first));
+  const auto known =
+      std::find_if(results.cameras.begin(), results.cameras.end(),
+                   [&](const CameraEntry& c) { return c.scene == scene && c.name == entry.name; });
+  const auto camera = static_cast<std::size_t>(known - results.cameras.begin());
+  if (known == results.cameras.end()) {
+    results.cameras.push_back(std::move(entry));
+  } else {
+    // Of several poses the noisiest counts.
+    entry.render_seconds = *entry.render_seconds + *known->render_seconds;
+    if (*entry.relative_noise < *known->relative_noise) {
+      entry.relative_noise = known->relative_noise;
+      entry.error_text = known->error_text;
+    }
+    *known = std::move(entry);
+  }
   for (std::size_t k = 0; k < found.conditions.size(); ++k) {
     if (!found.conditions[k]) continue;
     for (std::size_t t = 0; t < found.conditions[k]->size(); ++t) {
@@ -210,17 +221,30 @@ std::vector<std::string> notes_of(const StudyResults& results,
         "The Earth moves through the sky of this attitude: its limb is drawn by cells of the "
         "sphere, coarse where a camera sees it directly or in a mirror.");
   }
+  const bool many = results.scenes.size() > 1;
+  std::vector<const StudyPart*> first_of_scene;
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    const std::string scene = parts.size() > 1 ? scene_title(results, k) + ": " : std::string();
-    add_notes_of_scene(*parts[k], scene, limits[k], notes);
+    const std::string scene = many ? scene_title(results, parts[k]->scene) + ": " : std::string();
+    if (parts[k]->scene == first_of_scene.size()) {
+      add_notes_of_scene(*parts[k], scene, notes);
+      first_of_scene.push_back(parts[k]);
+    }
+    for (const std::string& limit : limits[k]) {
+      std::string note = scene + "Limit reached: " + limit + ".";
+      if (std::ranges::find(notes, note) == notes.end()) notes.push_back(std::move(note));
+    }
+  }
+  if (parts.size() > first_of_scene.size()) {
+    notes.push_back(
+        fmt::format("Joints and tracks have {} poses along the study; each has light of its own.",
+                    parts.size()));
   }
   for (const CameraEntry& camera : results.cameras) {
-    const auto wanted = parts[camera.scene]->loaded.scene.quality.error;
+    const auto wanted = first_of_scene[camera.scene]->loaded.scene.quality.error;
     const std::string limit = wanted && *camera.relative_noise > *wanted
                                   ? ", where the scene wants " + scenes::percent(*wanted)
                                   : std::string();
-    const std::string in =
-        parts.size() > 1 ? " in " + scene_title(results, camera.scene) : std::string();
+    const std::string in = many ? " in " + scene_title(results, camera.scene) : std::string();
     notes.push_back(
         fmt::format("Pictures of camera {}{}: {}{}.", camera.name, in, camera.error_text, limit));
   }

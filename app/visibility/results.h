@@ -27,10 +27,11 @@ struct CameraFindings {
                                          const std::vector<const StudyPart*>& parts,
                                          const std::string& command, std::uint64_t seed);
 
-// Adds a camera with its results and thumbnails; sets earth_error of its scene's conditions.
+// The next camera with its results and thumbnails, or one more pose of a camera that is there;
+// conditions of its scene get their earth_error.
 void add_camera(StudyResults& results, const CameraFindings& found);
 
-// limits: limitations of each scene's solution, in the order of `parts`.
+// limits: that each part's solution reached, as `parts`.
 [[nodiscard]] std::vector<std::string> notes_of(
     const StudyResults& results, const std::vector<const StudyPart*>& parts,
     const std::vector<std::vector<std::string>>& limits);

@@ -26,17 +26,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Parts = std::vector<std::unique_ptr<StudyPart>>;
-
-Parts prepare_parts(const studies::StudyFile& study, const Common& common) {
-  Parts parts;
+StudyParts prepare_all(const studies::StudyFile& study, const Common& common) {
+  StudyParts parts;
   for (std::size_t k = 0; k < study.scenes.size(); ++k) {
-    parts.push_back(prepare_part(study, k, common));
+    for (auto& part : prepare_parts(study, k, common)) parts.push_back(std::move(part));
   }
   return parts;
 }
 
-std::vector<const StudyPart*> pointers(const Parts& parts) {
+std::vector<const StudyPart*> pointers(const StudyParts& parts) {
   std::vector<const StudyPart*> all;
   for (const auto& part : parts) all.push_back(part.get());
   return all;
@@ -64,7 +62,7 @@ void check_models(const studies::StudyFile& study, const std::vector<const Study
 
 class Runner {
  public:
-  Runner(const StudyTask& task, const Common& common, const Parts& parts)
+  Runner(const StudyTask& task, const Common& common, const StudyParts& parts)
       : task_(task),
         common_(common),
         parts_(pointers(parts)),
@@ -127,14 +125,13 @@ class Runner {
     found.relative_noise = frame.relative_noise;
     found.render_seconds = frame.seconds;
     const auto part = std::find(parts_.begin(), parts_.end(), &found.part);
-    const auto scene = static_cast<std::size_t>(part - parts_.begin());
-    results_.scenes[scene].patches = frame.patches;
-    limits_[scene] = frame.limits;
+    results_.scenes[found.part.scene].patches = frame.patches;
+    limits_[static_cast<std::size_t>(part - parts_.begin())] = frame.limits;
   }
 
   void add_all(const std::vector<std::vector<ViewingConfiguration>>& more) {
     for (std::size_t k = 0; k < more.size(); ++k) {
-      ways_[k].insert(ways_[k].end(), more[k].begin(), more[k].end());
+      for (const ViewingConfiguration& way : more[k]) add_configuration(ways_[k], way);
     }
   }
 
@@ -171,7 +168,7 @@ class Runner {
   const StudyTask& task_;
   const Common& common_;
   const std::vector<const StudyPart*> parts_;
-  std::vector<std::vector<std::string>> limits_;  // per scene
+  std::vector<std::vector<std::string>> limits_;  // of each part's solution
   StudyResults results_;
   std::vector<std::vector<ViewingConfiguration>> ways_;
 };
@@ -210,13 +207,18 @@ void drop_pictures_of_skipped(studies::StudyFile& study,
 }
 
 // The scenes of the task, and its name and pictures where it says nothing of them.
-Parts prepare(StudyTask& task, const Common& common) {
+StudyParts prepare(StudyTask& task, const Common& common) {
   if (!common.quiet) note_unused(task);
-  Parts parts = prepare_parts(task.study, common);
+  StudyParts parts = prepare_all(task.study, common);
   check_models(task.study, pointers(parts));
   if (!parts.front()->moments.empty()) {
-    task.study.timeline = false;  // no closed circle
-    task.study.positions_deg = parts.front()->positions_deg;
+    task.study.timeline = false;  // no circle that closes
+    task.study.positions_deg.clear();
+    for (const auto& part : parts) {
+      if (part->scene > 0) break;
+      task.study.positions_deg.insert(task.study.positions_deg.end(), part->positions_deg.begin(),
+                                      part->positions_deg.end());
+    }
   }
   const std::string& scene = parts.front()->loaded.scene.name;
   if (task.study.path.empty() && !scene.empty()) task.study.name = scene;
@@ -229,12 +231,12 @@ Parts prepare(StudyTask& task, const Common& common) {
 }  // namespace
 
 Json plan_study(StudyTask task, const Common& common) {
-  const Parts parts = prepare(task, common);
+  const StudyParts parts = prepare(task, common);
   return plan_json(task.study, pointers(parts), task.folder, common);
 }
 
 std::optional<StudyResults> run_study(StudyTask task, const Common& common) {
-  const Parts parts = prepare(task, common);
+  const StudyParts parts = prepare(task, common);
   std::vector<std::string> skipped;
   for (const auto& part : parts) {
     for (const scenes::Camera* camera : part->skipped) {

@@ -3,6 +3,7 @@
 
 #include "base/numbers/digest.h"
 #include "scenes/light/photometry.h"
+#include "scenes/sky/albedo_grid.h"
 #include "scenes/sky/sky_cells.h"
 #include "scenes/texture/texture.h"
 
@@ -125,8 +126,8 @@ std::uint64_t sky(const Scene& scene) {
   }
   digest.add(std::uint64_t{scene.earth.has_value()});
   if (scene.earth) {
-    const auto& [direction, half_angle_deg, altitude_m, model, albedo, radiance, by_latitude] =
-        *scene.earth;
+    const auto& [direction, half_angle_deg, altitude_m, model, albedo, radiance, by_latitude, grid,
+                 to_ground] = *scene.earth;
     for (const Vec3& v : {direction, albedo, radiance}) digest.add(v);
     for (const double x : {half_angle_deg, altitude_m}) digest.add(x);
     digest.add(static_cast<std::uint64_t>(model));
@@ -135,6 +136,18 @@ std::uint64_t sky(const Scene& scene) {
       for (const double x : {a0, a1, a2}) digest.add(x);
       digest.add(north);
     }
+    if (grid) {
+      for (const auto& list : {grid->latitudes(), grid->longitudes(), grid->values()}) {
+        digest.add(std::uint64_t{list.size()});
+        for (const double x : list) digest.add(x);
+      }
+      for (int c = 0; c < 3; ++c) digest.add(to_ground[c]);
+    }
+  }
+  if (scene.moon) {
+    const auto& [direction, illuminance_lx, phase_deg, hidden] = *scene.moon;
+    digest.add(direction);
+    digest.add(illuminance_lx);
   }
   if (!scene.sky_parts) return digest.value();
   const auto& [suns, cells] = *scene.sky_parts;

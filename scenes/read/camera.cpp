@@ -11,8 +11,8 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr std::string_view camera_keys[] = {
-    "name",     "position", "look_at",    "up",     "fov_deg",      "focus",
-    "aperture", "cctv",     "resolution", "filter", "filter_width", "range_sensor"};
+    "name", "position",   "look_at", "up",           "fov_deg",      "focus", "aperture",
+    "cctv", "resolution", "filter",  "filter_width", "range_sensor", "joint"};
 struct FilterRow {
   std::string_view name;
   FilterShape shape;
@@ -116,7 +116,7 @@ std::string_view filter_name(FilterShape shape) {
   return "";
 }
 
-Camera read_camera(const TomlNode& node, double unit_m) {
+Camera read_camera(const TomlNode& node, double unit_m, const JointPoses& joints) {
   TableReader table(node, "[[camera]]", camera_keys);
   Camera camera;
   camera.name = table.read_name();
@@ -136,6 +136,10 @@ Camera read_camera(const TomlNode& node, double unit_m) {
                "up, [0, 0, 1] unless given, is a direction across the view",
                "Give another up = [x, y, z]");
   }
+  const Pose pose = joints.of(table);
+  camera.position = pose.point(camera.position);
+  camera.look_at = pose.point(camera.look_at);
+  camera.up = pose.rotation * camera.up;
   camera.fov_deg = table.number("fov_deg", {0.0, 180.0, true, true}).value_or(camera.fov_deg);
   read_resolution(camera, table);
   read_lens(camera, table);

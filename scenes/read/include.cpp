@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t most_nested = 8;
 constexpr std::string_view of_scene_alone[] = {"format", "name", "unit"};
-constexpr std::string_view file_keys[] = {"mesh", "file", "attitude_table", "trajectory"};
+constexpr std::string_view file_keys[] = {"mesh",      "file",  "attitude_table", "trajectory",
+                                          "angle_deg", "poses", "albedo_grid"};
 
 std::string text_in(const TomlTable& table, std::string_view key) {
   const TomlEntry* entry = find_entry(table, key);
@@ -128,7 +129,7 @@ class Includer {
     const TomlEntry* unit = find_entry(root, "unit");
     const bool has_lengths = std::any_of(root.begin(), root.end(), [](const TomlEntry& entry) {
       return entry.key == "object" || entry.key == "light" || entry.key == "camera" ||
-             entry.key == "area";
+             entry.key == "joint" || entry.key == "area";
     });
     if (unit == nullptr && !has_lengths) return;
     const std::string own = unit == nullptr ? "m" : text_in(root, "unit");

@@ -14,8 +14,9 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr const char* title = "[[object]]";
-constexpr std::string_view instance_keys[] = {"name",  "instance_of", "translate", "rotate",
-                                              "scale", "material",    "target",    "velocity"};
+constexpr std::string_view instance_keys[] = {"name",   "instance_of", "translate",
+                                              "rotate", "scale",       "material",
+                                              "target", "velocity",    "joint"};
 
 // Transform from the original's placement to the instance's.
 Instance relation(std::uint32_t object, const Placement& from, const Placement& to) {
@@ -106,6 +107,7 @@ void add(Scene& scene, const TableReader& table, Instance instance,
   object.source = "instance of " + original.name;
   object.unused.clear();
   object.target = table.flag("target").value_or(false);
+  object.joint = table.text("joint").value_or("");
   object.velocity_m_s = read_velocity(table);
   ShelvedMesh none;
   MaterialChoice choice(scene, table, none, own_material_count);
@@ -144,7 +146,8 @@ std::optional<std::string> InstanceReader::take(const TomlNode& node) {
   return TableReader(node, title, instance_keys).read_name();
 }
 
-void InstanceReader::finish(Scene& scene, double unit_m, std::size_t own_material_count) const {
+void InstanceReader::finish(Scene& scene, double unit_m, const JointPoses& joints,
+                            std::size_t own_material_count) const {
   const auto originals = static_cast<std::uint32_t>(scene.objects.size());
   std::vector<Instance> instances;
   std::size_t triangles = scene.triangles.size(), vertices = scene.vertices.size();
@@ -160,8 +163,14 @@ void InstanceReader::finish(Scene& scene, double unit_m, std::size_t own_materia
       table.fail("instance_of", fmt::format("is {}", in_quotes(named)),
                  "it names an [[object]] with a mesh or a shape", did_you_mean(named, names));
     }
-    const Placement placement = read_placement(table, unit_m);
-    instances.push_back(relation(object, placed_.at(named), placement));
+    const Placement placement = read_placement(table, unit_m, joints);
+    const Placement& original = placed_.at(named);
+    if (placement.is_mirrored() != original.is_mirrored()) {
+      table.fail("scale", "makes a mirror image of the original",
+                 "an instance is turned, moved and scaled alone",
+                 "Give the object a mesh or shape of its own, with that scale");
+    }
+    instances.push_back(relation(object, original, placement));
     triangles += scene.objects[object].triangle_count;
     if (triangles > max_scene_triangles) {
       table.fail("instance_of", "makes the scene too large",

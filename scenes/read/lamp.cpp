@@ -13,17 +13,18 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr std::string_view point_keys[] = {"name",     "group",     "type",
+constexpr std::string_view point_keys[] = {"joint",    "name",      "group", "type",
                                            "position", "intensity", "flux"};
-constexpr std::string_view spot_keys[] = {"name",      "group", "type",     "position", "aim",
-                                          "intensity", "flux",  "beam_deg", "field_deg"};
-constexpr std::string_view rectangle_keys[] = {"name",   "group",  "type",     "center",
+constexpr std::string_view spot_keys[] = {"joint", "name",      "group", "type",     "position",
+                                          "aim",   "intensity", "flux",  "beam_deg", "field_deg"};
+constexpr std::string_view rectangle_keys[] = {"joint",  "name",   "group",    "type", "center",
                                                "edge_u", "edge_v", "exitance", "flux"};
-constexpr std::string_view disk_keys[] = {"name",   "group",  "type",     "center",
+constexpr std::string_view disk_keys[] = {"joint",  "name",   "group",    "type", "center",
                                           "normal", "radius", "exitance", "flux"};
-constexpr std::string_view distant_keys[] = {"name", "group", "type", "direction", "illuminance"};
-constexpr std::string_view ies_keys[] = {"name", "group", "type", "file",  "position",
-                                         "aim",  "up",    "flux", "color", "tilt_deg"};
+constexpr std::string_view distant_keys[] = {"joint", "name",      "group",
+                                             "type",  "direction", "illuminance"};
+constexpr std::string_view ies_keys[] = {"joint", "name", "group", "type",  "file",    "position",
+                                         "aim",   "up",   "flux",  "color", "tilt_deg"};
 
 // The lamp's strength, given directly or as flux, which is flux_per_unit times the strength.
 Rgb read_strength(const TableReader& table, std::string_view key, double flux_per_unit) {
@@ -239,7 +240,8 @@ const Luminaire& LuminaireShelf::take(const std::filesystem::path& named,
   return luminaires_.emplace(key, read_ies(path, asked_at)).first->second;
 }
 
-Lamp read_lamp(const TomlNode& node, double unit_m, LuminaireShelf& shelf) {
+Lamp read_lamp(const TomlNode& node, double unit_m, const JointPoses& joints,
+               LuminaireShelf& shelf) {
   static const std::vector<std::string_view> keys = all_keys();
   TableReader table(node, "[[light]]", keys);
   Lamp lamp;
@@ -256,6 +258,11 @@ Lamp read_lamp(const TomlNode& node, double unit_m, LuminaireShelf& shelf) {
   const LampReader& reader = readers[static_cast<std::size_t>(kind)];
   table.allow_only(reader.keys, fmt::format("a light of type \"{}\"", type));
   reader.read(lamp, table, unit_m, shelf);
+  const Pose pose = joints.of(table);
+  lamp.position = pose.point(lamp.position);
+  for (Vec3* direction : {&lamp.axis, &lamp.edge_u, &lamp.edge_v, &lamp.c0}) {
+    *direction = pose.rotation * *direction;
+  }
   for (const Rgb& strength : {lamp.intensity_cd, lamp.exitance}) {
     if (!std::isfinite(base::max_component(strength))) {
       table.fail("flux", "gives no finite strength",

@@ -12,9 +12,12 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr std::string_view time_keys[] = {"start", "stop", "step"};
+constexpr std::string_view time_keys[] = {"start", "stop", "step", "moment"};
+constexpr KeyList study_time_keys = KeyList(time_keys).first(3);
 constexpr std::string_view trajectory_keys[] = {"trajectory", "attitude",   "inertial_as",
-                                                "body_axes",  "quaternion", "ut1_minus_utc_s"};
+                                                "body_axes",  "quaternion", "ut1_minus_utc_s",
+                                                "earth_shape"};
+constexpr std::string_view shapes_of_earth[] = {"ellipsoid", "sphere"};
 constexpr std::string_view scalar_words[] = {"scalar-first", "scalar-last"};
 constexpr std::string_view axis_words[] = {"x", "y", "z", "-x", "-y", "-z"};
 constexpr const char* dates =
@@ -27,6 +30,34 @@ Vec3 axis_named(std::string_view word) {
   axis[word.back() - 'x'] = sign;
   return axis;
 }
+
+void read_mission_attitude(Scene& scene, Mission& mission, const TableReader& table) {
+  const auto attitude = table.text("attitude");
+  const bool is_file = attitude && attitude->find('.') != std::string::npos;
+  for (const char* key : {"body_axes", "quaternion"}) {
+    if (is_file || !table.has(key)) continue;
+    table.fail(key, "belongs to an attitude from a file", "no file is named",
+               "Write attitude = \"FILE.aem\", or remove the key");
+  }
+  if (is_file) {
+    mission.attitude.clear();
+    mission.body_axes = read_body_axes(table);
+    mission.history = std::make_shared<const AttitudeHistory>(read_attitude_history(
+        scene.files.emplace_back(scene.path.parent_path() / *attitude), mission.clock,
+        read_scalar_place(table), table.where("attitude"), scene.warnings));
+  } else if (attitude) {
+    std::vector<std::string_view> words(std::begin(orbit_attitudes), std::end(orbit_attitudes));
+    words.push_back(inertial_attitude);
+    mission.attitude = *table.choice("attitude", words);
+  }
+  if (mission.attitude != inertial_attitude && table.has("inertial_as")) {
+    table.fail("inertial_as", "belongs to attitude \"inertial\"", {},
+               "Write attitude = \"inertial\", or remove the key");
+  }
+  mission.inertial_as = table.choice("inertial_as", orbit_attitudes).value_or("bay-to-earth");
+}
+
+}  // namespace
 
 glm::dmat3 read_body_axes(const TableReader& table) {
   constexpr const char* wanted =
@@ -52,37 +83,11 @@ glm::dmat3 read_body_axes(const TableReader& table) {
   return axes;
 }
 
-void read_mission_attitude(Scene& scene, Mission& mission, const TableReader& table) {
-  const auto attitude = table.text("attitude");
-  const bool is_file = attitude && attitude->find('.') != std::string::npos;
-  for (const char* key : {"body_axes", "quaternion"}) {
-    if (is_file || !table.has(key)) continue;
-    table.fail(key, "belongs to an attitude from a file", "no file is named",
-               "Write attitude = \"FILE.aem\", or remove the key");
-  }
-  if (is_file) {
-    mission.attitude.clear();
-    mission.body_axes = read_body_axes(table);
-    std::optional<ScalarPlace> scalar;
-    if (const auto word = table.choice("quaternion", scalar_words)) {
-      scalar = *word == "scalar-first" ? ScalarPlace::First : ScalarPlace::Last;
-    }
-    mission.history = std::make_shared<const AttitudeHistory>(
-        read_attitude_history(scene.files.emplace_back(scene.path.parent_path() / *attitude),
-                              mission.clock, scalar, table.where("attitude"), scene.warnings));
-  } else if (attitude) {
-    std::vector<std::string_view> words(std::begin(orbit_attitudes), std::end(orbit_attitudes));
-    words.push_back(inertial_attitude);
-    mission.attitude = *table.choice("attitude", words);
-  }
-  if (mission.attitude != inertial_attitude && table.has("inertial_as")) {
-    table.fail("inertial_as", "belongs to attitude \"inertial\"", {},
-               "Write attitude = \"inertial\", or remove the key");
-  }
-  mission.inertial_as = table.choice("inertial_as", orbit_attitudes).value_or("bay-to-earth");
+std::optional<ScalarPlace> read_scalar_place(const TableReader& table) {
+  const auto word = table.choice("quaternion", scalar_words);
+  if (!word) return std::nullopt;
+  return *word == "scalar-first" ? ScalarPlace::First : ScalarPlace::Last;
 }
-
-}  // namespace
 
 bool names_trajectory(const TomlNode& orbit) {
   const auto* table = std::get_if<TomlTable>(&orbit.value);
@@ -101,8 +106,9 @@ std::optional<Instant> read_moment(const TableReader& table, std::string_view ke
   return read;
 }
 
-TimeSpan read_time(const TomlNode& node) {
-  const TableReader table(node, "[time]", time_keys);
+namespace {
+
+TimeSpan read_span(const TableReader& table) {
   TimeSpan span;
   span.start =
       table.required(read_moment(table, "start"), "start", "start = \"2026-03-01T12:00:00\"");
@@ -128,10 +134,18 @@ TimeSpan read_time(const TomlNode& node) {
   return span;
 }
 
+}  // namespace
+
+TimeSpan read_time(const TomlNode& node) {
+  return read_span(TableReader(node, "[time]", study_time_keys));
+}
+
 Orbit read_mission(Scene& scene, const TomlNode& node, const TomlNode* time) {
   const TableReader table(node, "[orbit]", trajectory_keys);
   auto mission = std::make_shared<Mission>();
   mission->clock.ut1_minus_utc_s = table.number("ut1_minus_utc_s", {-1.0, 1.0}).value_or(0.0);
+  mission->ellipsoid =
+      table.choice("earth_shape", shapes_of_earth).value_or("ellipsoid") == "ellipsoid";
   const std::string named =
       table.required(table.text("trajectory"), "trajectory", "trajectory = \"FILE.oem\"");
   mission->trajectory = std::make_shared<const Trajectory>(
@@ -139,9 +153,12 @@ Orbit read_mission(Scene& scene, const TomlNode& node, const TomlNode* time) {
                       table.where("trajectory"), scene.warnings));
   read_mission_attitude(scene, *mission, table);
   mission->time.start = mission->time.stop = mission->trajectory->first();
+  mission->moment = mission->time.start;
   if (time != nullptr) {
-    mission->time = read_time(*time);
+    const TableReader span(*time, "[time]", time_keys);
+    mission->time = read_span(span);
     mission->has_span = mission->time.step_s > 0.0;
+    mission->moment = read_moment(span, "moment").value_or(mission->time.start);
   }
   if (leap_seconds_uncertain(mission->time.stop)) {
     scene.warnings.push_back(fmt::format(

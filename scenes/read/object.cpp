@@ -16,13 +16,14 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr std::string_view object_keys[] = {
-    "name",   "mesh",     "part",       "shape",     "material",    "translate", "rotate",
-    "scale",  "target",   "inward",     "corners",   "min",         "max",       "center",
-    "radius", "segments", "from",       "to",        "caps",        "normal",    "orient",
-    "lights", "cameras",  "smooth_deg", "round_deg", "instance_of", "velocity",  "axes"};
+    "name",      "mesh",        "part",     "shape",    "material", "translate",
+    "rotate",    "scale",       "target",   "inward",   "corners",  "min",
+    "max",       "center",      "radius",   "segments", "from",     "to",
+    "caps",      "normal",      "orient",   "lights",   "cameras",  "smooth_deg",
+    "round_deg", "instance_of", "velocity", "axes",     "joint"};
 constexpr std::string_view shapes[] = {"quad", "box", "sphere", "cylinder", "disk"};
-constexpr std::string_view common_keys[] = {"name",   "material", "translate", "rotate",  "scale",
-                                            "target", "inward",   "orient",    "velocity"};
+constexpr std::string_view common_keys[] = {"name",   "material", "translate", "rotate",   "scale",
+                                            "target", "inward",   "orient",    "velocity", "joint"};
 constexpr std::string_view orients[] = {"outward", "inward", "as-is", "two-sided"};
 constexpr std::string_view axes_known[] = {"y-up", "as-is"};
 constexpr Range lengths{-largest_length, largest_length};
@@ -213,15 +214,22 @@ void take_extras(Scene& scene, const TableReader& table, Mesh& mesh, std::uint32
 
 }  // namespace
 
-Placement read_placement(const TableReader& table, double unit_m) {
+Placement read_placement(const TableReader& table, double unit_m, const JointPoses& joints) {
   Placement placement;
   placement.unit_m = unit_m;
-  if (table.has("scale")) placement.scale = *table.scale("scale", {0.0, 1e6, true});
+  if (table.has("scale")) {
+    placement.scale = *table.scale("scale", {-1e6, 1e6});
+    if (placement.scale.x * placement.scale.y * placement.scale.z == 0.0) {
+      table.fail("scale", "is 0",
+                 "allowed are numbers from -1e6 to 1e6 other than 0; a negative one mirrors");
+    }
+  }
   if (const auto degrees = table.vector("rotate", {-1e6, 1e6})) {
     placement.rotation = rotation_xyz(*degrees);
   }
   placement.translate = table.vector("translate", lengths).value_or(Vec3(0.0));
   placement.inward = table.flag("inward").value_or(false);
+  placement.move(joints.of(table));
   return placement;
 }
 
@@ -241,8 +249,8 @@ Vec3 read_velocity(const TableReader& table) {
   return table.vector("velocity", {-1e4, 1e4}).value_or(Vec3(0.0));
 }
 
-Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& shelf,
-                      FileFronts& fronts) {
+Placement read_object(Scene& scene, const TomlNode& node, double unit_m, const JointPoses& joints,
+                      MeshShelf& shelf, FileFronts& fronts) {
   TableReader table(node, "[[object]]", object_keys);
   Object object;
   object.name = table.read_name();
@@ -256,7 +264,8 @@ Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShe
                   "mesh = \"FILE\", shape = \"quad\", \"box\", \"sphere\", ... or instance_of = "
                   "\"OBJECT\"");
   }
-  Placement placement = read_placement(table, unit_m);
+  Placement placement = read_placement(table, unit_m, joints);
+  object.joint = table.text("joint").value_or("");
   object.orient = read_orient(table, placement);
   ShelvedMesh made;
   ShelvedMesh* shelved = &made;

@@ -16,10 +16,10 @@ using base::Blame;
 using base::Error;
 
 constexpr std::string_view fixed_keys[] = {"format", "name", "unit"};
-constexpr std::string_view plain_tables[] = {"sun",     "earth",   "orbit",  "time",
-                                             "ambient", "monitor", "quality"};
-constexpr std::string_view named_tables[] = {"material", "object", "light",       "area",
-                                             "camera",   "cctv",   "range_sensor"};
+constexpr std::string_view plain_tables[] = {"sun",     "earth",   "orbit",   "time",
+                                             "ambient", "monitor", "quality", "moon"};
+constexpr std::string_view named_tables[] = {"material", "object",       "light", "area", "camera",
+                                             "cctv",     "range_sensor", "joint", "track"};
 
 template <std::size_t N>
 bool among(std::string_view word, const std::string_view (&words)[N]) {

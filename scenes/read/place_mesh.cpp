@@ -202,7 +202,8 @@ class Placer {
     }
     const auto all = static_cast<int>(indices.size());
     if (along == all || against == all) {
-      fronts_.set(next_polygon_, against == all ? -placed : placed);
+      const bool flips = (against == all) != placement_.is_mirrored();
+      fronts_.set(next_polygon_, flips ? -placed : placed);
     }
   }
 
@@ -251,14 +252,14 @@ class Placer {
       Triangle triangle{{0, 0, 0}, number, material, next_polygon_};
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t corner = indices[piece[k]];
-        // Reversed about the first corner, so that a parallelogram stays (0,1,2), (0,2,3) of its
-        // corners in reverse order.
-        triangle.vertex[placement_.inward ? (3 - k) % 3 : k] =
+        // Turned about the first corner, so that a parallelogram stays (0,1,2), (0,2,3) of its
+        // corners read the other way round.
+        triangle.vertex[placement_.reverses() ? (3 - k) % 3 : k] =
             textured ? textured_vertex(corner, polygon.first + piece[k]) : plain_vertex(corner);
       }
       scene_.triangles.push_back(triangle);
     }
-    if (placement_.inward && pieces.triangles.size() == 2) {
+    if (placement_.reverses() && pieces.triangles.size() == 2) {
       std::swap(scene_.triangles[scene_.triangles.size() - 1],
                 scene_.triangles[scene_.triangles.size() - 2]);
     }

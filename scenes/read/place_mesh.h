@@ -8,6 +8,7 @@
 
 #include "scenes/health/file_fronts.h"
 #include "scenes/mesh.h"
+#include "scenes/time/linkage.h"
 
 namespace earthshine::scenes {
 
@@ -23,7 +24,15 @@ struct Placement {
   [[nodiscard]] Vec3 apply(const Vec3& v) const {
     return unit_m * (rotation * (scale * (from_file * v)) + translate);
   }
-  // Rotates a direction of the file; unit length.
+  // Followed by a rigid motion, of metres.
+  void move(const Pose& pose) {
+    rotation = pose.rotation * rotation;
+    translate = pose.rotation * translate + pose.offset_m / unit_m;
+  }
+  // Whether fronts become backs unless the winding is reversed: a mirror image, or `inward`.
+  [[nodiscard]] bool is_mirrored() const { return scale.x * scale.y * scale.z < 0.0; }
+  [[nodiscard]] bool reverses() const { return inward != is_mirrored(); }
+  // Of a direction of the file, unit.
   [[nodiscard]] Vec3 turned(const Vec3& along) const {
     return glm::normalize(rotation * (scale * (from_file * along)));
   }

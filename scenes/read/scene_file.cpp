@@ -10,6 +10,7 @@
 #include "scenes/read/include.h"
 #include "scenes/read/override.h"
 #include "scenes/read/scene_parts.h"
+#include "scenes/sky/moon.h"
 #include "scenes/surface_texture.h"
 #include "scenes/text/toml_file.h"
 #include "scenes/triangle_point.h"
@@ -18,8 +19,9 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr std::string_view root_keys[] = {
-    "format", "name", "unit",    "material", "object", "light",   "area",         "sun",    "earth",
-    "orbit",  "time", "ambient", "camera",   "cctv",   "monitor", "range_sensor", "quality"};
+    "format",  "name",         "unit",    "material", "object",  "light",  "area",
+    "sun",     "earth",        "orbit",   "time",     "ambient", "camera", "cctv",
+    "monitor", "range_sensor", "quality", "joint",    "moon",    "track"};
 constexpr std::string_view camera_file_keys[] = {"cctv", "monitor"};
 constexpr std::string_view ambient_keys[] = {"radiance"};
 constexpr std::string_view units[] = {"m", "cm", "mm", "ft", "in"};
@@ -133,24 +135,27 @@ Scene scene_of(TomlNode tree, const std::filesystem::path& path,
   read_named(root, "material", [&](const TomlNode& node) {
     return scene.materials.emplace_back(read_material(node)).name;
   });
+  read_sky(scene, {plain_table(root, "sun"), plain_table(root, "earth"), plain_table(root, "orbit"),
+                   plain_table(root, "time"), plain_table(root, "moon")});
+  read_linkage(scene, root, unit_m);
+  const JointPoses joints(scene);
   LuminaireShelf luminaires(path.parent_path());
   read_named(root, "light", [&](const TomlNode& node) {
-    return scene.lamps.emplace_back(read_lamp(node, unit_m, luminaires)).name;
+    return scene.lamps.emplace_back(read_lamp(node, unit_m, joints, luminaires)).name;
   });
   read_named(root, "area", [&](const TomlNode& node) {
     return scene.areas.emplace_back(read_area(node, unit_m)).name;
   });
+  if (scene.moon) add_moon_lamp(scene, plain_table(root, "moon")->where);
   const auto tables = luminaires.files();
   scene.files.insert(scene.files.end(), tables.begin(), tables.end());
   for (std::string& warning : luminaires.warnings()) scene.warnings.push_back(std::move(warning));
-  read_sky(scene, {plain_table(root, "sun"), plain_table(root, "earth"), plain_table(root, "orbit"),
-                   plain_table(root, "time")});
   if (const TomlNode* node = plain_table(root, "ambient")) {
     const TableReader table(*node, "[ambient]", ambient_keys);
     scene.ambient_radiance = table.colour("radiance").value_or(Rgb(0.0));
   }
   read_named(root, "camera", [&](const TomlNode& node) {
-    return scene.cameras.emplace_back(read_camera(node, unit_m)).name;
+    return scene.cameras.emplace_back(read_camera(node, unit_m, joints)).name;
   });
   read_cctv(scene, root);
   read_named(root, "range_sensor", [&](const TomlNode& node) {
@@ -165,7 +170,7 @@ Scene scene_of(TomlNode tree, const std::filesystem::path& path,
   FileFronts fronts;
   read_named(root, "object", [&](const TomlNode& node) {
     if (const auto name = instances.take(node)) return *name;
-    const Placement placement = read_object(scene, node, unit_m, shelf, fronts);
+    const Placement placement = read_object(scene, node, unit_m, joints, shelf, fronts);
     instances.know(scene.objects.back().name, placement);
     return scene.objects.back().name;
   });
@@ -173,7 +178,7 @@ Scene scene_of(TomlNode tree, const std::filesystem::path& path,
   constexpr std::size_t mending_bytes = 56;  // per triangle, measured on spheres
   base::check_room(scene.triangles.size() * mending_bytes, path.string());
   FaceParts parts = mend_surfaces(scene, fronts);
-  instances.finish(scene, unit_m, shelf.own_material_count());
+  instances.finish(scene, unit_m, joints, shelf.own_material_count());
   check_size(scene);
   settle_textures(scene);
   lift_lamps(scene);

@@ -48,7 +48,27 @@ class LuminaireShelf {
   std::map<std::filesystem::path, Luminaire> luminaires_;
 };
 
-[[nodiscard]] Lamp read_lamp(const TomlNode& node, double unit_m, LuminaireShelf& shelf);
+// Where joints and tracks have what hangs on them.
+class JointPoses {
+ public:
+  JointPoses() = default;
+  // At the scene's moment, after its sky was read.
+  explicit JointPoses(const Scene& scene);
+  // Of the joint that the table's key "joint" names; no motion without the key. Throws base::Error
+  // (Input) for an unknown one.
+  [[nodiscard]] Pose of(const TableReader& table) const;
+
+ private:
+  std::vector<std::string> names_;
+  std::vector<Pose> poses_;
+};
+
+// [[joint]] and [[track]] to scene.linkage, after the sky was read. Throws base::Error (Input) for
+// unknown parents, a joint that is its own ancestor, and bad tables, at their file and line.
+void read_linkage(Scene& scene, const TableReader& root, double unit_m);
+
+[[nodiscard]] Lamp read_lamp(const TomlNode& node, double unit_m, const JointPoses& joints,
+                             LuminaireShelf& shelf);
 
 [[nodiscard]] Area read_area(const TomlNode& node, double unit_m);
 
@@ -57,14 +77,14 @@ inline constexpr Range altitudes_km{0.0, 1e6, true};
 // [orbit]; a table of attitudes is relative to scene.path, warnings go to the scene.
 [[nodiscard]] Orbit read_orbit(Scene& scene, const TomlNode& node);
 
-// Sets scene.sun, scene.earth and scene.orbit from [sun], [earth], [orbit] and [time], each null if
-// absent.
+// [sun], [earth], [orbit], [time] and [moon], each null when absent, to scene.sun, scene.earth,
+// scene.orbit and scene.moon.
 struct SkyTables {
-  const TomlNode *sun, *earth, *orbit, *time;
+  const TomlNode *sun, *earth, *orbit, *time, *moon;
 };
 void read_sky(Scene& scene, const SkyTables& tables);
 
-[[nodiscard]] Camera read_camera(const TomlNode& node, double unit_m);
+[[nodiscard]] Camera read_camera(const TomlNode& node, double unit_m, const JointPoses& joints);
 [[nodiscard]] SettingTable read_settings(const TomlNode& node, const std::string& title,
                                          bool named);
 [[nodiscard]] Quality read_quality(const TomlNode& node, std::vector<std::string>& warnings);
@@ -92,16 +112,17 @@ class MeshShelf {
   std::map<std::pair<std::filesystem::path, VertexNormals>, std::unique_ptr<ShelvedMesh>> meshes_;
 };
 
-// translate, rotate, scale and inward of an object.
-[[nodiscard]] Placement read_placement(const TableReader& table, double unit_m);
+// translate, rotate, scale, inward and joint of an object.
+[[nodiscard]] Placement read_placement(const TableReader& table, double unit_m,
+                                       const JointPoses& joints);
 
 // velocity of an object, m/s.
 [[nodiscard]] Vec3 read_velocity(const TableReader& table);
 
-// Adds the object's triangles, and materials that only its mesh defines, to the scene, and the
-// sides of the mesh's normals to `fronts`. Returns the placement.
-Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& shelf,
-                      FileFronts& fronts);
+// Adds the object's triangles, and the materials that only its mesh defines, to the scene, and to
+// `fronts` the sides that the mesh's normals say are fronts. Says how it is placed.
+Placement read_object(Scene& scene, const TomlNode& node, double unit_m, const JointPoses& joints,
+                      MeshShelf& shelf, FileFronts& fronts);
 
 // Adds lamps and cameras of a mesh file to the scene: those of the part (no_index: all), placed
 // like the object's faces; strengths do not change with scale. Their names are "OBJECT.NAME" and
@@ -119,7 +140,8 @@ class InstanceReader {
   [[nodiscard]] std::optional<std::string> take(const TomlNode& node);
   // Registers an object that is not an instance.
   void know(const std::string& name, const Placement& placement) { placed_[name] = placement; }
-  void finish(Scene& scene, double unit_m, std::size_t own_material_count) const;
+  void finish(Scene& scene, double unit_m, const JointPoses& joints,
+              std::size_t own_material_count) const;
 
  private:
   std::map<std::string, Placement> placed_;

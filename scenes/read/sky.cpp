@@ -9,18 +9,21 @@
 
 #include "scenes/read/mission.h"
 #include "scenes/read/scene_parts.h"
+#include "scenes/sky/albedo_grid.h"
 #include "scenes/sky/attitude_file.h"
+#include "scenes/sky/moon.h"
 #include "scenes/sky/orbit.h"
 
 namespace earthshine::scenes {
 namespace {
 
 constexpr std::string_view sun_keys[] = {"direction", "illuminance", "angular_radius_deg"};
-constexpr std::string_view earth_keys[] = {"direction", "altitude_km",    "albedo",    "model",
-                                           "radiance",  "half_angle_deg", "albedo_by", "albedo_a0",
-                                           "albedo_a1", "albedo_a2",      "north"};
+constexpr std::string_view earth_keys[] = {
+    "direction", "altitude_km", "albedo",    "model",     "radiance", "half_angle_deg",
+    "albedo_by", "albedo_a0",   "albedo_a1", "albedo_a2", "north",    "albedo_grid"};
+constexpr std::string_view moon_keys[] = {"direction", "phase_deg"};
 constexpr std::string_view models[] = {"lambert", "uniform"};
-constexpr std::string_view albedo_laws[] = {"mean", "latitude"};
+constexpr std::string_view albedo_laws[] = {"mean", "latitude", "grid"};
 constexpr std::string_view latitude_keys[] = {"albedo_a0", "albedo_a1", "albedo_a2", "north"};
 constexpr std::string_view example_direction = "direction = [x, y, z]";
 
@@ -68,15 +71,34 @@ void read_disc(Earth& earth, const TableReader& table, bool by_orbit) {
   earth.half_angle_deg = base::degrees(earth_half_angle_rad(earth.altitude_m));
 }
 
-// Albedo of a Lambertian Earth.
-void read_albedo(Earth& earth, const TableReader& table, bool by_orbit) {
-  if (table.choice("albedo_by", albedo_laws).value_or("mean") == "mean") {
+// The share of the light that a Lambert Earth gives back.
+void read_albedo(Scene& scene, Earth& earth, const TableReader& table, bool by_orbit) {
+  const std::string law_named = table.choice("albedo_by", albedo_laws).value_or("mean");
+  if (law_named != "grid" && table.has("albedo_grid")) {
+    table.fail("albedo_grid", "belongs to albedo_by = \"grid\"");
+  }
+  if (law_named != "latitude") {
     for (const std::string_view key : latitude_keys) {
       if (!table.has(key)) continue;
-      table.fail(key, "belongs to albedo_by = \"latitude\"", "the mean albedo has no latitudes",
+      table.fail(key, "belongs to albedo_by = \"latitude\"",
+                 fmt::format("albedo_by = \"{}\" has no such law", law_named),
                  "Write albedo_by = \"latitude\", or remove the key");
     }
+  }
+  if (law_named == "mean") {
     earth.albedo = table.colour("albedo", share).value_or(earth.albedo);
+    return;
+  }
+  if (law_named == "grid") {
+    if (mission_of(scene) == nullptr) {
+      table.fail("albedo_by", "is \"grid\", and the scene has no dates to turn the Earth by", {},
+                 "Write [orbit] with trajectory = \"FILE.oem\"");
+    }
+    const std::string named =
+        table.required(table.text("albedo_grid"), "albedo_grid", "albedo_grid = \"FILE.csv\"");
+    earth.grid = std::make_shared<const AlbedoGrid>(read_albedo_grid(
+        scene.files.emplace_back(scene.path.parent_path() / named), table.where("albedo_grid")));
+    earth.albedo = table.colour("albedo", share).value_or(Rgb(1.0));
     return;
   }
   LatitudeAlbedo law;
@@ -93,7 +115,7 @@ void read_albedo(Earth& earth, const TableReader& table, bool by_orbit) {
   earth.albedo = table.colour("albedo", share).value_or(Rgb(1.0));
 }
 
-Earth read_earth(const TableReader& table, bool by_orbit) {
+Earth read_earth(Scene& scene, const TableReader& table, bool by_orbit) {
   Earth earth;
   if (table.choice("model", models).value_or("lambert") == "uniform")
     earth.model = EarthModel::Uniform;
@@ -105,7 +127,7 @@ Earth read_earth(const TableReader& table, bool by_orbit) {
   read_disc(earth, table, by_orbit);
   if (earth.model == EarthModel::Uniform) {
     for (const std::string_view key :
-         {"albedo", "albedo_by", "albedo_a0", "albedo_a1", "albedo_a2", "north"}) {
+         {"albedo", "albedo_by", "albedo_a0", "albedo_a1", "albedo_a2", "north", "albedo_grid"}) {
       if (!table.has(key)) continue;
       table.fail(key, "belongs to model \"lambert\"", "model \"uniform\" has radiance");
     }
@@ -116,9 +138,26 @@ Earth read_earth(const TableReader& table, bool by_orbit) {
       table.fail("radiance", "belongs to model \"uniform\"", "model \"lambert\" has albedo",
                  "Write model = \"uniform\", or remove the key");
     }
-    read_albedo(earth, table, by_orbit);
+    read_albedo(scene, earth, table, by_orbit);
   }
   return earth;
+}
+
+// Where and how bright it is follows from the date; without one from its keys.
+void read_moon(Scene& scene, const TableReader& table) {
+  scene.moon = Moon();
+  if (mission_of(scene) != nullptr) {
+    for (const std::string_view key : moon_keys) {
+      if (table.has(key)) table.fail(key, "stands beside a trajectory", "the date determines it");
+    }
+    return;
+  }
+  scene.moon->direction =
+      table.required(table.direction("direction"), "direction", example_direction);
+  scene.moon->phase_deg = table.number("phase_deg", {0.0, 180.0}).value_or(0.0);
+  scene.moon->illuminance_lx =
+      moon_illuminance_lx(scene.sun ? scene.sun->illuminance_lx : Sun().illuminance_lx,
+                          scene.moon->phase_deg, mean_moon_distance_m, astronomical_unit_m);
 }
 
 constexpr std::string_view orbit_keys[] = {
@@ -174,7 +213,7 @@ void check_declination(Scene& scene, const Orbit& orbit) {
 }  // namespace
 
 void read_sky(Scene& scene, const SkyTables& tables) {
-  auto [sun, earth, orbit, time] = tables;
+  auto [sun, earth, orbit, time, moon] = tables;
   const bool by_orbit = orbit != nullptr;
   if (by_orbit && names_trajectory(*orbit)) {
     scene.orbit = read_mission(scene, *orbit, time);
@@ -190,11 +229,12 @@ void read_sky(Scene& scene, const SkyTables& tables) {
   if (by_orbit && sun == nullptr) sun = &nothing;
   if (by_orbit && earth == nullptr) earth = &nothing;
   if (sun != nullptr) scene.sun = read_sun(TableReader(*sun, "[sun]", sun_keys), by_orbit);
+  if (moon != nullptr) read_moon(scene, TableReader(*moon, "[moon]", moon_keys));
   if (earth == nullptr) return;
   const TableReader table(*earth, "[earth]", earth_keys);
-  scene.earth = read_earth(table, by_orbit);
+  scene.earth = read_earth(scene, table, by_orbit);
   if (const Mission* mission = mission_of(scene)) {
-    move_to_moment(scene, mission->time.start);
+    move_to_moment(scene, mission->moment);
   } else if (scene.orbit) {
     move_along_orbit(scene, scene.orbit->position_deg);
   }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/input/input_file.h"
+#include "scenes/text/csv_lines.h"
 #include "scenes/text/message_text.h"
 #include "scenes/text/table_reader.h"
 #include "scenes/text/text_lines.h"
@@ -36,48 +37,16 @@ constexpr ColumnKind kinds[] = {{"time_s", {-1e9, 1e9}},      {"position_deg", {
                                 {"roll_deg", {-360.0, 360.0}}};
 static_assert(std::size(kinds) == ColumnCount);
 
-struct Field {
-  std::string_view text;
-  base::Location where;
-};
-
-// The fields of a line without blanks; empty for a blank line or a comment.
-std::vector<Field> fields_of(std::string_view line, const std::string& file, int number) {
-  const char* const start = line.data();
-  line = line.substr(0, line.find('#'));
-  std::vector<Field> fields;
-  if (trimmed(line).empty()) return fields;
-  while (true) {
-    const std::size_t comma = line.find(',');
-    const std::string_view text = trimmed(line.substr(0, comma));
-    const char* const at = text.empty() ? line.data() : text.data();
-    fields.push_back({text, {file, number, static_cast<int>(at - start) + 1}});
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
-  }
-}
-
 class AttitudeReader {
  public:
-  AttitudeReader(std::string_view text, std::string file) : text_(text) {
-    table_.file = std::move(file);
+  AttitudeReader(std::string_view text, const std::string& file) : lines_(text, file) {
+    table_.file = file;
   }
 
   AttitudeTable read(std::vector<std::string>& warnings) {
-    if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
-    bool headed = false;
-    for (int number = 1; !text_.empty(); ++number) {
-      const std::size_t end = text_.find('\n');
-      const auto fields = fields_of(text_.substr(0, end), table_.file, number);
-      text_.remove_prefix(end == std::string_view::npos ? text_.size() : end + 1);
-      if (fields.empty()) continue;
-      if (headed) {
-        read_row(fields);
-      } else {
-        read_header(fields);
-        headed = true;
-      }
-    }
+    const bool headed = lines_.next();
+    if (headed) read_header(lines_.fields());
+    while (lines_.next()) read_row(lines_.fields());
     if (!headed) throw Error(Blame::Input, table_.file, "has no lines", wanted_columns);
     if (table_.at.empty()) {
       throw Error(Blame::Input, table_.file, "has a header and no rows", {},
@@ -88,10 +57,10 @@ class AttitudeReader {
   }
 
  private:
-  void read_header(const std::vector<Field>& fields) {
+  void read_header(const std::vector<CsvField>& fields) {
     std::vector<std::string> names;
     for (const ColumnKind& kind : kinds) names.emplace_back(kind.name);
-    for (const Field& field : fields) {
+    for (const CsvField& field : fields) {
       const auto found = std::find(names.begin(), names.end(), field.text);
       if (found == names.end()) {
         const bool number = number_in(field.text).has_value();
@@ -127,7 +96,7 @@ class AttitudeReader {
     }
   }
 
-  void read_row(const std::vector<Field>& fields) {
+  void read_row(const std::vector<CsvField>& fields) {
     if (fields.size() != columns_.size()) {
       throw Error(Blame::Input, {table_.file, fields[0].where.line, 0},
                   fmt::format("a row of {} columns", fields.size()),
@@ -263,7 +232,7 @@ class AttitudeReader {
     return by_quaternion_ ? std::vector{Qw, Qx, Qy, Qz} : std::vector{Yaw, Pitch, Roll};
   }
 
-  std::string_view text_;
+  CsvLines lines_;
   AttitudeTable table_;
   std::vector<Row> rows_;
   std::vector<Column> columns_;

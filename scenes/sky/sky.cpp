@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "scenes/sky/albedo_grid.h"
+
 namespace earthshine::scenes {
 namespace {
 
@@ -50,9 +52,16 @@ Rgb EarthRadiance::operator()(const Vec3& direction) const {
   if (earth.model == EarthModel::Uniform) return earth.radiance;
   const auto surface = surface_zenith(direction);
   if (!surface) return Rgb(0.0);
+  Rgb falling(0.0);  // lx on the ground
   const double cos_sun = glm::dot(*surface, scene_.sun->direction);
-  if (cos_sun <= 0.0) return Rgb(0.0);
-  const Rgb radiance = earth.albedo * scene_.sun->illuminance_lx * (cos_sun / base::pi);
+  if (cos_sun > 0.0) falling += cos_sun * scene_.sun->illuminance_lx;
+  if (scene_.moon) {
+    const double cos_moon = glm::dot(*surface, scene_.moon->direction);
+    if (cos_moon > 0.0) falling += cos_moon * scene_.moon->illuminance_lx;
+  }
+  if (falling == Rgb(0.0)) return falling;
+  const Rgb radiance = earth.albedo * falling / base::pi;
+  if (earth.grid) return radiance * earth.grid->at(earth.to_ground * *surface);
   if (!earth.by_latitude) return radiance;
   return radiance * albedo_at(*earth.by_latitude, glm::dot(*surface, earth.by_latitude->north));
 }
@@ -76,16 +85,18 @@ bool earth_is_lit(const Scene& scene) {
   if (!scene.earth) return false;
   const Earth& earth = *scene.earth;
   if (earth.model == EarthModel::Uniform) return base::max_component(earth.radiance) > 0.0;
-  if (!scene.sun || base::max_component(scene.sun->illuminance_lx * earth.albedo) <= 0.0) {
-    return false;
-  }
+  if (base::max_component(earth.albedo) <= 0.0) return false;
   if (earth.by_latitude && largest_albedo(*earth.by_latitude) <= 0.0) return false;
-  // The visible cap extends acos(R / (R + h)) = 90 deg - half angle around the sub-spacecraft
-  // point. Part of it is lit if the Sun is less than 90 deg farther from that point.
-  const double sun_from_zenith =
-      std::acos(std::clamp(glm::dot(-earth.direction, scene.sun->direction), -1.0, 1.0));
-  const double cap = base::pi / 2 - base::radians(earth.half_angle_deg);
-  return sun_from_zenith < base::pi / 2 + cap;
+  if (earth.grid && earth.grid->largest() <= 0.0) return false;
+  // The visible cap reaches acos(R / (R + h)) = 90 deg - half angle around the sub-spacecraft
+  // point; some of it is lit if the light stands less than 90 deg further from that point.
+  const auto lights_cap = [&](const auto& light) {
+    if (!light || base::max_component(light->illuminance_lx * earth.albedo) <= 0.0) return false;
+    const double from_zenith =
+        std::acos(std::clamp(glm::dot(-earth.direction, light->direction), -1.0, 1.0));
+    return from_zenith < base::pi - base::radians(earth.half_angle_deg);
+  };
+  return lights_cap(scene.sun) || lights_cap(scene.moon);
 }
 
 double visible_sun_share(const Scene& scene) {

@@ -21,7 +21,7 @@ constexpr double end_slack_s = 1.0;  // tolerance of STOP_TIME against the last 
 constexpr double jump_deg = 10.0, jump_ratio = 10.0;
 constexpr const char* types = "allowed are QUATERNION, EULER_ANGLE and SPIN, with rates or without";
 constexpr const char* say_scalar =
-    "Write quaternion = \"scalar-first\" or \"scalar-last\" under [orbit]";
+    "Write quaternion = \"scalar-first\" or \"scalar-last\" beside attitude";
 
 const std::vector<std::string_view> aem_keys = {
     "OBJECT_NAME",         "OBJECT_ID",     "CENTER_NAME",

@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/sky/moon.h"
 #include "scenes/sky/orbit.h"
 #include "scenes/sky/sky.h"
 
 namespace earthshine::scenes {
 namespace {
 
+// WGS 84 (NIMA TR8350.2, 2000).
+constexpr double earth_equator_m = 6378137.0, earth_flattening = 1.0 / 298.257223563;
 constexpr double eclipse_step_s = 15.0;
 constexpr double eclipse_error_s = 1e-3;
 
@@ -68,12 +71,37 @@ double angle_between(const Vec3& a, const Vec3& b) {
   return 2.0 * std::atan2(glm::length(a - b), glm::length(a + b));
 }
 
-// Angle of the Sun's middle above the Earth's limb, rad: negative behind it.
+Vec3 pole_at(const Mission& mission, Instant t) {
+  return to_gcrs(Frame::Itrf, t, mission.clock) * Vec3(0.0, 0.0, 1.0);
+}
+
+// From the Earth's centre to its limb on the side of the Sun, rad.
+double limb_rad(const Mission& mission, const State& state, const Vec3& sun, Instant t) {
+  if (mission.ellipsoid) return ellipsoid_limb_rad(state.position_m, sun, pole_at(mission, t));
+  return earth_half_angle_rad(glm::length(state.position_m) - base::earth_radius_m);
+}
+
+// How far the Sun's middle is from the Earth's limb, rad: negative behind it.
 double above_limb(const Mission& mission, Instant t) {
   const State state = mission.trajectory->at(t);
-  const double distance_m = glm::length(state.position_m);
-  const double limb = earth_half_angle_rad(distance_m - base::earth_radius_m);
-  return angle_between(sun_from(state, t), -state.position_m / distance_m) - limb;
+  const Vec3 sun = sun_from(state, t);
+  return angle_between(sun, -glm::normalize(state.position_m)) - limb_rad(mission, state, sun, t);
+}
+
+// The Moon from the spacecraft.
+void move_moon(Scene& scene, const Mission& mission, Instant t) {
+  const State state = mission.trajectory->at(t);
+  const Vec3 moon = moon_position_m(t), sun = sun_direction(t) * sun_distance_m(t);
+  const Vec3 away = moon - state.position_m;
+  const Vec3 direction = glm::normalize(away);
+  const double limb = limb_rad(mission, state, direction, t);
+  scene.moon->direction = glm::normalize(scene_axes(mission, t) * direction);
+  scene.moon->phase_deg =
+      base::degrees(angle_between(glm::normalize(sun - moon), glm::normalize(-away)));
+  scene.moon->hidden = angle_between(direction, -glm::normalize(state.position_m)) < limb;
+  scene.moon->illuminance_lx =
+      moon_illuminance_lx(scene.sun ? scene.sun->illuminance_lx : Sun().illuminance_lx,
+                          scene.moon->phase_deg, glm::length(away), glm::length(sun - moon));
 }
 
 }  // namespace
@@ -92,7 +120,8 @@ MissionState mission_state(const Mission& mission, Instant t) {
   found.distance_m = glm::length(state.position_m);
   found.sun = in_scene(sun);
   found.earth = in_scene(-local.zenith);
-  found.north = in_scene(to_gcrs(Frame::Itrf, t, mission.clock) * Vec3(0.0, 0.0, 1.0));
+  found.north = in_scene(pole_at(mission, t));
+  found.limb_deg = base::degrees(limb_rad(mission, state, sun, t));
   const Vec3 s = local.components(sun);
   found.beta_deg = base::degrees(std::asin(std::clamp(s.y, -1.0, 1.0)));
   found.position_deg = base::degrees(std::atan2(-s.x, s.z));
@@ -101,21 +130,55 @@ MissionState mission_state(const Mission& mission, Instant t) {
   return found;
 }
 
+glm::dmat3 scene_axes(const Mission& mission, Instant t) {
+  const State state = mission.trajectory->at(t);
+  const SceneAxes in_scene(mission, LocalFrame(state), sun_from(state, t), t);
+  return {in_scene({1.0, 0.0, 0.0}), in_scene({0.0, 1.0, 0.0}), in_scene({0.0, 0.0, 1.0})};
+}
+
 const Mission* mission_of(const Scene& scene) {
   return scene.orbit && scene.orbit->files ? scene.orbit->files->mission.get() : nullptr;
 }
 
 void move_to_moment(Scene& scene, Instant t) {
-  const MissionState state = mission_state(*mission_of(scene), t);
+  const Mission& mission = *mission_of(scene);
+  const MissionState state = mission_state(mission, t);
   scene.orbit->altitude_m = state.distance_m - base::earth_radius_m;
   scene.orbit->beta_deg = state.beta_deg;
   scene.orbit->position_deg = state.position_deg;
   if (scene.sun) scene.sun->direction = state.sun;
+  if (scene.moon) move_moon(scene, mission, t);
   if (!scene.earth) return;
   scene.earth->direction = state.earth;
   scene.earth->altitude_m = scene.orbit->altitude_m;
-  scene.earth->half_angle_deg = base::degrees(earth_half_angle_rad(scene.earth->altitude_m));
+  scene.earth->half_angle_deg = state.limb_deg;
   if (scene.earth->by_latitude) scene.earth->by_latitude->north = state.north;
+  if (scene.earth->grid) {
+    scene.earth->to_ground =
+        glm::transpose(scene_axes(mission, t) * to_gcrs(Frame::Itrf, t, mission.clock));
+  }
+}
+
+double ellipsoid_limb_rad(const Vec3& position_m, const Vec3& toward, const Vec3& pole) {
+  // Stretched along the pole the ellipsoid is a sphere; lines stay lines. Directions cos x e +
+  // sin x s, e toward the centre and s across it, touch the sphere where
+  // (p d)^2 = (d d) (p p - a^2), a quadratic equation in tan x.
+  const auto stretched = [&](const Vec3& v) {
+    return v + (1.0 / (1.0 - earth_flattening) - 1.0) * glm::dot(v, pole) * pole;
+  };
+  const Vec3 centre = -glm::normalize(position_m);
+  const Vec3 across = toward - glm::dot(toward, centre) * centre;
+  const Vec3 side =
+      glm::length(across) > 0.0 ? glm::normalize(across) : base::frame_around(centre).tangent;
+  const Vec3 p = stretched(position_m), e = stretched(centre), s = stretched(side);
+  const double beyond = glm::dot(p, p) - earth_equator_m * earth_equator_m;
+  const double pe = glm::dot(p, e), ps = glm::dot(p, s);
+  const double a = ps * ps - glm::dot(s, s) * beyond;
+  const double b = 2.0 * (pe * ps - glm::dot(e, s) * beyond);
+  const double c = pe * pe - glm::dot(e, e) * beyond;
+  // One root on each side of the centre; a < 0 < c outside the ellipsoid.
+  const double root = std::sqrt(b * b - 4.0 * a * c);
+  return std::atan((-b - root) / (2.0 * a));
 }
 
 std::vector<EclipseTimes> eclipses_between(const Mission& mission, Instant from, Instant to,

@@ -23,18 +23,21 @@ struct TimeSpan {
 };
 
 struct Mission {
-  TimeSpan time;          // `start` is the time of the scene's own Sun and Earth
-  bool has_span = false;  // [time] has more than one time
+  TimeSpan time;
+  Instant moment;         // of the scene's own Sun, Earth and joints
+  bool has_span = false;  // [time] gives more than one moment
   std::shared_ptr<const Trajectory> trajectory;
   std::string attitude = "bay-to-earth";     // of orbit_attitudes or "inertial"; empty: history
   std::string inertial_as = "bay-to-earth";  // attitude at time.start, then fixed
   std::shared_ptr<const AttitudeHistory> history;
   glm::dmat3 body_axes{1.0};  // columns: the history's body axes in the scene
   EarthClock clock;
+  bool ellipsoid = true;  // what hides the Sun: WGS 84, or a sphere of base::earth_radius_m
 };
 
 struct MissionState {
-  Vec3 sun{0.0}, earth{0.0}, north{0.0};  // unit vectors in the scene
+  Vec3 sun{0.0}, earth{0.0}, north{0.0};  // in the scene, unit
+  double limb_deg = 0.0;                  // from the Earth's centre to its limb toward the Sun
   double distance_m = 0.0;                // from the Earth's centre
   double beta_deg = 0.0;                  // elevation of the Sun above the orbital plane
   double position_deg = 0.0;              // from orbit noon in the direction of motion, 0 to 360
@@ -44,15 +47,18 @@ struct MissionState {
 // Throws base::Error (Input) outside the trajectory or the attitude history.
 [[nodiscard]] MissionState mission_state(const Mission& mission, Instant t);
 
-// The scene's mission, or null.
+// Takes directions in GCRS to the scene's axes.
+[[nodiscard]] glm::dmat3 scene_axes(const Mission& mission, Instant t);
+
+// Of the scene; null without.
 [[nodiscard]] const Mission* mission_of(const Scene& scene);
 
-// Sets the scene's Sun, Earth, circular orbit and the pole of its albedo by latitude for a time of
-// its mission.
+// Sets the scene's Sun, Moon, Earth and circle, and what its albedo goes by, to that moment of its
+// mission. The Earth's disc is round; its limb toward the Sun is the ellipsoid's.
 void move_to_moment(Scene& scene, Instant t);
 
-// Times at which the Earth, a sphere of base::earth_radius_m, hides the Sun. Ends outside the
-// requested interval have no value.
+// When the Earth hides the Sun; ends outside the span asked for
+// are left out.
 struct EclipseTimes {
   std::optional<Instant> penumbra_begin, umbra_begin, umbra_end, penumbra_end;
 };
@@ -61,7 +67,12 @@ struct EclipseTimes {
 [[nodiscard]] std::vector<EclipseTimes> eclipses_between(const Mission& mission, Instant from,
                                                          Instant to, double sun_angular_radius_deg);
 
-// Period of a circular orbit at the present distance.
+// From the Earth's centre to its limb, as seen from `position_m` on the side of `toward` (unit), rad.
+// The ellipsoid of WGS 84 about `pole` (unit), both in GCRS.
+[[nodiscard]] double ellipsoid_limb_rad(const Vec3& position_m, const Vec3& toward,
+                                        const Vec3& pole);
+
+// Of the circle with the state's distance.
 [[nodiscard]] double period_at(const Mission& mission, Instant t);
 
 }  // namespace earthshine::scenes

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import unittest
 
+import exr
 import program
 from tiny_bay import BAY
 
@@ -71,6 +72,28 @@ class Missions(program.Case):
         self.assertIn("2026-03-01T12:10:00Z to 2026-03-01T12:12:00Z", study["answers"][0]["text"])
         self.write("study.toml", 'format = 1\nscene = "bay.toml"\n[orbit]\npositions = 4\n')
         self.says(self.refused("study", "run", "study.toml", "-o", "no"), "study.toml:3", "trajectory", "[time]")
+
+    def test_a_study_solves_anew_for_each_pose(self):
+        # The box on a joint: at rest until 12:11, turned by 12:12.
+        self.write("bay.toml", MISSION.replace('name = "box"\n', 'name = "box"\njoint = "door"\n') +
+                   '[[joint]]\nname = "door"\npivot = [0, 0, 0]\naxis = [0, 0, 1]\nangle_deg = "door.csv"\n')
+        self.write("door.csv", "utc, door\n2026-03-01T12:00:00, 10\n2026-03-01T12:11:00, 10\n2026-03-01T12:12:00, 20\n")
+        self.write("study.toml", 'format = 1\nscene = "bay.toml"\ncameras = ["B"]\nsize = "12x12"\nwanted = ["box>=0.01"]\n'
+                   '[time]\nstart = "2026-03-01T12:10:00"\nstop = "2026-03-01T12:12:00"\nstep = 60\n'
+                   '[[picture]]\nname = "last"\ncamera = "B"\ntime = "2026-03-01T12:12:00"\n')
+        study = self.json("study", "run", "study.toml", "-o", "out")
+        self.assertEqual([(c["utc"][11:16], c["pose"]) for c in study["conditions"]],
+                         [("12:10", "door 10 deg"), ("12:11", "door 10 deg"), ("12:12", "door 20 deg")])
+        self.assertEqual((len(study["scenes"]), len(study["cameras"])), (1, 1))
+        self.assertEqual(len([c for c in study["costs"] if c["stage"].startswith("solve")]), 2)
+        self.assertIn("door 20 deg", (self.folder / "out" / "report.html").read_text(encoding="utf-8"))
+        # The last moment is what a render of that moment and a joint with that number show.
+        at = ("render", "bay.toml", "--camera", "B", "--size", "12x12", "--quiet")
+        self.done(*at, "--set", "time.moment=2026-03-01T12:12:00", "-o", "a.exr")
+        self.done(*at, "--set", "time.moment=2026-03-01T12:12:00", "--set", "joint.door.angle_deg=20", "-o", "b.exr")
+        self.assertEqual(exr.read(self.folder / "a.exr")[3], exr.read(self.folder / "b.exr")[3])
+        self.says(self.refused("inspect", "bay.toml", "--set", "time.moment=2026-03-01T12:20:00"),
+                  "door.csv:4", "ends at 2026-03-01T12:12:00Z", "allowed are moments")
 
     def test_what_cannot_be_is_refused(self):
         self.says(self.refused("study", "orbit", "bay.toml", "--positions", "4", "-o", "no"), "trajectory", "[time]")

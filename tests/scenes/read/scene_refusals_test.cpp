@@ -194,7 +194,7 @@ TEST(SceneFile, KeysThatDoNotGoTogetherAreRefused) {
             {"scene.toml:7:1", "from 3 to 4096"}},
        Case{"ZeroScale",
             material + box + "material = \"m\"\nscale = 0\n",
-            {"scene.toml:10:1", "\"scale\"", "above 0"}},
+            {"scene.toml:10:1", "\"scale\"", "other than 0"}},
        Case{"MissingMesh",
             "[[object]]\nname = \"o\"\nmesh = \"meshes/none.obj\"\n",
             {"scene.toml:4:1", "meshes/none.obj", "No such file"}},

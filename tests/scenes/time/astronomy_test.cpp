@@ -39,6 +39,29 @@ TEST(Astronomy, SunStandsWhereTheAlmanacHasIt) {
   }
 }
 
+// The Astronomical Almanac's low-precision formulas for the Sun (page C5), within 0.01 deg from 1950
+// to 2050, each month of two years: n days from J2000, mean longitude L and anomaly g,
+// longitude L + 1.915 sin g + 0.020 sin 2g; distance 1.00014 - 0.01671 cos g - 0.00014 cos 2g au,
+// within 0.0003.
+TEST(Astronomy, SunAgreesWithTheAlmanacsLowPrecisionFormulas) {
+  const Instant j2000 = of_tt("2000-01-01T12:00:00");
+  for (const char* first : {"1992-01-15T00:00:00", "2026-01-15T00:00:00"}) {
+    for (int month = 0; month < 12; ++month) {
+      const Instant t = of_tt(first) + 30.4 * 86400.0 * month;
+      const double n = (t - j2000) / 86400.0;
+      const double g = base::radians(357.528 + 0.9856003 * n);
+      const double longitude =
+          base::radians(280.460 + 0.9856474 * n + 1.915 * std::sin(g) + 0.020 * std::sin(2.0 * g));
+      const double obliquity = base::radians(23.439 - 0.0000004 * n);
+      const Vec3 formula(std::cos(longitude), std::cos(obliquity) * std::sin(longitude),
+                         std::sin(obliquity) * std::sin(longitude));
+      EXPECT_LT(apart_deg(of_date(sun_direction(t), t), formula), 0.011) << first << month;
+      const double au = 1.00014 - 0.01671 * std::cos(g) - 0.00014 * std::cos(2.0 * g);
+      EXPECT_NEAR(sun_distance_m(t) / 149597870700.0, au, 3e-4) << first << month;
+    }
+  }
+}
+
 TEST(Astronomy, MoonStandsWhereTheAlmanacHasIt) {
   // 1992 April 12, 0h TT: right ascension 134.68847 deg, declination 13.76837 deg, distance
   // 368409.7 km (Meeus, example 47.a).

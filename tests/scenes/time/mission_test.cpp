@@ -48,7 +48,7 @@ Sky sky_of(const Ellipse& circle, double s) {
 // revolution the Sun moves by 0.6 s of orbital motion, so that the position at the time itself
 // counts.
 TEST_F(MissionScene, EclipsesOfACircleAreWhereTheClosedFormHasThem) {
-  const Scene scene = read();
+  const Scene scene = read("earth_shape = \"sphere\"\n");
   const Mission& mission = *mission_of(scene);
   const double rho = base::radians(scene.sun->angular_radius_deg);
   const double h = std::asin(base::earth_radius_m / circle.semi_major_m);

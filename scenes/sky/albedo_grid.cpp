@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/sky/albedo_grid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/input/input_file.h"
+#include "scenes/text/csv_lines.h"
+#include "scenes/text/message_text.h"
+#include "scenes/text/text_lines.h"
+
+namespace earthshine::scenes {
+namespace {
+
+using base::Blame;
+using base::Error;
+
+constexpr std::size_t max_grid_bytes = std::size_t{16} << 20;
+
+double number(const CsvField& field, double low, double high) {
+  const auto found = number_in(field.text);
+  if (found && *found >= low && *found <= high) return *found;
+  throw Error(Blame::Input, field.where, fmt::format("{} stands there", in_quotes(field.text)),
+              fmt::format("allowed are numbers from {:g} to {:g}", low, high));
+}
+
+void check_rise(const std::vector<double>& list, double next, const base::Location& where) {
+  if (list.empty() || next > list.back()) return;
+  throw Error(Blame::Input, where, fmt::format("{:g} after {:g}", next, list.back()),
+              "latitudes and longitudes rise");
+}
+
+// The node at or below x and the share of the way to the next one.
+struct Between {
+  std::size_t low, high;
+  double share;
+};
+
+Between between(const std::vector<double>& nodes, double x) {
+  const auto after = std::upper_bound(nodes.begin(), nodes.end(), x);
+  if (after == nodes.begin()) return {0, 0, 0.0};
+  const auto low = static_cast<std::size_t>(after - nodes.begin()) - 1;
+  if (after == nodes.end()) return {low, low, 0.0};
+  return {low, low + 1, (x - nodes[low]) / (nodes[low + 1] - nodes[low])};
+}
+
+Between around(const std::vector<double>& longitudes, double x) {
+  if (longitudes.size() == 1) return {0, 0, 0.0};
+  x = longitudes.front() + std::fmod(std::fmod(x - longitudes.front(), 360.0) + 360.0, 360.0);
+  if (x < longitudes.back()) return between(longitudes, x);
+  const double gap = 360.0 - (longitudes.back() - longitudes.front());
+  const double share = gap > 0.0 ? (x - longitudes.back()) / gap : 0.0;
+  return {longitudes.size() - 1, 0, share};
+}
+
+}  // namespace
+
+AlbedoGrid::AlbedoGrid(std::vector<double> latitudes, std::vector<double> longitudes,
+                       std::vector<double> values)
+    : latitudes_(std::move(latitudes)),
+      longitudes_(std::move(longitudes)),
+      values_(std::move(values)),
+      largest_(*std::max_element(values_.begin(), values_.end())) {}
+
+double AlbedoGrid::at(const Vec3& up) const {
+  const Between lat = between(latitudes_, base::degrees(std::asin(std::clamp(up.z, -1.0, 1.0))));
+  const Between lon = around(longitudes_, base::degrees(std::atan2(up.y, up.x)));
+  const auto row = [&](std::size_t r) {
+    const double* const first = values_.data() + r * longitudes_.size();
+    return first[lon.low] + lon.share * (first[lon.high] - first[lon.low]);
+  };
+  const double low = row(lat.low);
+  return low + lat.share * (row(lat.high) - low);
+}
+
+AlbedoGrid read_albedo_grid(const std::filesystem::path& path, const base::Location& asked_at) {
+  const std::string text = base::read_input_file(path, max_grid_bytes, asked_at);
+  CsvLines lines(text, path.string());
+  constexpr const char* wanted =
+      "a header names latitude_deg and then longitudes, or latitude_deg, albedo";
+  if (!lines.next() || lines.fields().front().text != "latitude_deg" || lines.fields().size() < 2) {
+    throw Error(Blame::Input, {path.string(), std::max(1, lines.line()), 0},
+                "the header is missing", wanted);
+  }
+  std::vector<double> latitudes, longitudes, values;
+  const std::vector<CsvField> header = lines.fields();
+  if (header.size() == 2 && header[1].text == "albedo") {
+    longitudes = {0.0};
+  } else {
+    for (std::size_t k = 1; k < header.size(); ++k) {
+      const double longitude = number(header[k], -180.0, 360.0);
+      check_rise(longitudes, longitude, header[k].where);
+      longitudes.push_back(longitude);
+      if (longitude - longitudes.front() <= 360.0) continue;
+      throw Error(Blame::Input, header[k].where, "longitudes go round more than once", wanted);
+    }
+  }
+  while (lines.next()) {
+    const std::vector<CsvField>& fields = lines.fields();
+    if (fields.size() != header.size()) {
+      throw Error(Blame::Input, {path.string(), lines.line(), 0},
+                  fmt::format("a row of {} columns", fields.size()),
+                  fmt::format("the header names {}", header.size()));
+    }
+    const double latitude = number(fields[0], -90.0, 90.0);
+    check_rise(latitudes, latitude, fields[0].where);
+    latitudes.push_back(latitude);
+    for (std::size_t k = 1; k < fields.size(); ++k) values.push_back(number(fields[k], 0.0, 1.0));
+  }
+  if (latitudes.empty()) {
+    throw Error(Blame::Input, {path.string(), lines.line(), 0}, "the table has no rows", wanted);
+  }
+  return {std::move(latitudes), std::move(longitudes), std::move(values)};
+}
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/time/linkage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scenes/time/mission.h"
+
+namespace earthshine::scenes {
+namespace {
+
+// The row at or before t and the share of the way to the next one.
+struct RowPlace {
+  std::size_t row;
+  double share;
+};
+
+template <class Value>
+RowPlace place_in(const MotionTable<Value>& table, Instant t) {
+  if (t < table.at.front() || table.at.back() < t) {
+    const bool late = table.at.back() < t;
+    throw base::Error(
+        base::Blame::Input, {table.file, late ? table.last_line : table.first_line, 0},
+        fmt::format("the table {} at {}, and {} is asked for", late ? "ends" : "begins",
+                    utc_text(late ? table.at.back() : table.at.front()), utc_text(t)),
+        fmt::format("allowed are moments from {} to {}", utc_text(table.at.front()),
+                    utc_text(table.at.back())),
+        "Add rows, or change [time]");
+  }
+  const auto after = std::upper_bound(table.at.begin(), table.at.end(), t);
+  const auto row = static_cast<std::size_t>(after - table.at.begin()) - 1;
+  if (after == table.at.end()) return {row, 0.0};
+  return {row, (t - table.at[row]) / (table.at[row + 1] - table.at[row])};
+}
+
+double angle_at(const AngleTable& table, Instant t) {
+  const auto [row, share] = place_in(table, t);
+  if (share == 0.0) return table.values[row];
+  return table.values[row] + share * (table.values[row + 1] - table.values[row]);
+}
+
+Pose pose_at(const PoseTable& table, Instant t) {
+  const auto [row, share] = place_in(table, t);
+  const TablePose& from = table.values[row];
+  if (share == 0.0) return {glm::mat3_cast(from.turn), from.offset_m};
+  const TablePose& to = table.values[row + 1];
+  return {glm::mat3_cast(glm::slerp(from.turn, to.turn, share)),
+          from.offset_m + share * (to.offset_m - from.offset_m)};
+}
+
+Pose pose_at(const Visitor& visitor, const Mission& mission, Instant t) {
+  const glm::dmat3 to_scene = scene_axes(mission, t);
+  const Vec3 away = visitor.trajectory.at(t).position_m - mission.trajectory->at(t).position_m;
+  Pose pose{glm::dmat3(1.0), visitor.origin_m + to_scene * away};
+  if (visitor.attitude) {
+    pose.rotation =
+        to_scene * glm::mat3_cast(visitor.attitude->at(t)) * glm::transpose(visitor.body_axes);
+  }
+  return pose;
+}
+
+}  // namespace
+
+Pose turn_about(const Vec3& pivot_m, const Vec3& axis, double angle_deg) {
+  const glm::dmat3 rotation = glm::mat3_cast(glm::angleAxis(base::radians(angle_deg), axis));
+  return {rotation, pivot_m - rotation * pivot_m};
+}
+
+bool Linkage::moves() const {
+  return std::any_of(joints.begin(), joints.end(), [](const Joint& j) { return j.moves(); });
+}
+
+std::vector<JointState> Linkage::at(const Mission* mission, Instant t) const {
+  std::vector<JointState> states(joints.size());
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const Joint& joint = joints[k];
+    JointState& state = states[k];
+    if (const auto* poses = std::get_if<PoseTable>(&joint.motion)) {
+      state.pose = pose_at(*poses, t);
+    } else if (const auto* visitor = std::get_if<Visitor>(&joint.motion)) {
+      state.pose = pose_at(*visitor, *mission, t);
+    } else {
+      const auto* angles = std::get_if<AngleTable>(&joint.motion);
+      state.angle_deg = angles != nullptr ? angle_at(*angles, t) : std::get<double>(joint.motion);
+      // Exactly nothing where nothing turns.
+      if (*state.angle_deg != 0.0)
+        state.pose = turn_about(joint.pivot_m, joint.axis, *state.angle_deg);
+    }
+  }
+  std::vector<JointState> found = states;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    for (auto parent = joints[k].parent; parent; parent = joints[*parent].parent) {
+      found[k].pose = states[*parent].pose * found[k].pose;
+    }
+  }
+  return found;
+}
+
+std::vector<JointState> joints_now(const Scene& scene) {
+  const Mission* const mission = mission_of(scene);
+  return scene.linkage->at(mission, mission != nullptr ? mission->moment : Instant());
+}
+
+std::string pose_text(const Scene& scene) {
+  std::string text;
+  const std::vector<JointState> states = joints_now(scene);
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    const auto& [angle_deg, pose] = states[k];
+    const Vec3& p = pose.offset_m;
+    text += (text.empty() ? "" : ", ") + scene.linkage->joints[k].name;
+    text += angle_deg ? fmt::format(" {:.4g} deg", *angle_deg)
+                      : fmt::format(" at ({:.3f}, {:.3f}, {:.3f}) m", p.x, p.y, p.z);
+  }
+  return text;
+}
+
+}  // namespace earthshine::scenes
