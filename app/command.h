@@ -65,6 +65,8 @@ struct Command {
 [[nodiscard]] Command add_new(CLI::App& program);
 [[nodiscard]] Command add_relight(CLI::App& program);
 [[nodiscard]] Command add_console(CLI::App& program);
+[[nodiscard]] Command add_dataset(CLI::App& program);
+[[nodiscard]] Command add_view(CLI::App& program);
 // `degrade` and `degrade certify`.
 [[nodiscard]] std::vector<Command> add_degrade(CLI::App& program);
 [[nodiscard]] Command add_certify(CLI::App& degrade);

@@ -127,6 +127,8 @@ int run(std::vector<std::string> arguments, const Workers& workers) {
   for (Command& part : add_study(program)) commands.push_back(std::move(part));
   commands.push_back(add_report(program));
   commands.push_back(add_console(program));
+  commands.push_back(add_dataset(program));
+  commands.push_back(add_view(program));
   commands.push_back(add_manual(program));
   commands.push_back(add_completion(program));
   int exit_code = 0;

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <span>
 
 #include "raytrace/camera/camera.h"
 #include "raytrace/frame/cryptomatte.h"
@@ -72,12 +72,14 @@ void write_cryptomatte(base::ExrHeader& header, const scenes::Scene& scene,
 
 void add_camera(base::ExrHeader& result, const scenes::Camera& camera, int columns, int rows) {
   HeaderWriter header(result);
+  const raytrace::CameraMatrices matrices =
+      raytrace::camera_matrices(raytrace::make_camera_model(camera, columns, rows));
   header.text("camera", camera.name);
   header.text("camera.position_m", numbers(camera.position));
   header.text("camera.look_at_m", numbers(camera.look_at));
   header.text("camera.up", numbers(camera.up));
   header.number("camera.fov_deg", camera.fov_deg);
-  header.number("camera.focal_px", 0.5 * rows / std::tan(0.5 * base::radians(camera.fov_deg)));
+  header.number("camera.focal_px", matrices.k[4]);
   if (camera.focus_m > 0.0 && camera.aperture_m > 0.0) {
     header.number("camera.focus_m", camera.focus_m);
     header.number("camera.aperture_m", camera.aperture_m);
@@ -85,8 +87,14 @@ void add_camera(base::ExrHeader& result, const scenes::Camera& camera, int colum
   }
   header.text("camera.filter", std::string(scenes::filter_name(camera.filter)));
   header.number("camera.filter_width_px", camera.filter_width_px);
-  write_matrices(result,
-                 raytrace::camera_matrices(raytrace::make_camera_model(camera, columns, rows)));
+  write_matrices(result, matrices);
+  if (camera.distortion != scenes::Distortion::None) {
+    const bool is_fisheye = camera.distortion == scenes::Distortion::Fisheye;
+    header.text(
+        is_fisheye ? "camera.fisheye" : "camera.distortion",
+        fmt::format("{}",
+                    fmt::join(std::span(camera.distortion_k).first(is_fisheye ? 4 : 5), " ")));
+  }
 }
 
 void add_names(base::ExrHeader& header, const scenes::Scene& scene,

@@ -4,11 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
-#include <list>
-#include <type_traits>
 #include <utility>
-#include <variant>
 
 #include "app/call/memory.h"
 #include "app/call/render_call.h"
@@ -18,6 +14,7 @@
 #include "app/render/draw.h"
 #include "app/render/effect_table.h"
 #include "app/render/error_json.h"
+#include "app/render/kept_lights.h"
 #include "app/render/light.h"
 #include "app/tools/form_factors.h"
 #include "base/error.h"
@@ -48,9 +45,6 @@ struct Light::Kept {
 };
 
 namespace {
-
-// Number of cached solutions of a scene, for programs that alternate between cameras and lights.
-constexpr std::size_t most_kept = 4;
 
 raytrace::Indirect indirect_of(const std::string& word) {
   using raytrace::Indirect;
@@ -167,22 +161,6 @@ std::vector<std::uint64_t> digests_of(const std::vector<radiosity::ScenePart>& p
   return digests;
 }
 
-// Cache key of a solution: the scene's parts, the solver's settings, the effects.
-struct LightKey {
-  std::vector<std::uint64_t> parts;
-  std::vector<std::variant<double, std::uint64_t>> knobs;
-  scenes::Effects effects;
-  std::vector<std::string> groups;
-  double time_limit_s = 0.0;
-
-  [[nodiscard]] bool operator==(const LightKey& other) const {
-    static_assert(std::has_unique_object_representations_v<scenes::Effects>);
-    return parts == other.parts && knobs == other.knobs && groups == other.groups &&
-           time_limit_s == other.time_limit_s &&
-           std::memcmp(&effects, &other.effects, sizeof effects) == 0;
-  }
-};
-
 }  // namespace
 
 struct Session::State {
@@ -194,9 +172,9 @@ struct Session::State {
   scenes::Quality quality;  // } of the file: calls may set their own
   std::vector<std::string> warnings;
   std::optional<scenes::RayQuery> query;
-  std::vector<std::uint64_t> shape;                               // digests of the input of `query`
-  std::map<std::string, std::vector<std::string>> view_warnings;  // by camera, for this scene
-  std::list<std::pair<LightKey, app::Solved>> lights;             // most recent first
+  std::vector<std::uint64_t> shape;  // digests of what `query` depends on
+  std::map<std::string, std::vector<std::string>> view_warnings;  // by camera, of this scene
+  app::KeptLights lights;
   std::size_t reads = 0, structures = 0, solves = 0, pictures = 0;
 
   void read() {
@@ -241,27 +219,10 @@ struct Session::State {
 
   const app::Solved& light_for(const app::RenderCall& call, const app::Common& common,
                                app::StageTimes& times) {
-    LightKey key{digests_of(radiosity::scene_parts(loaded.scene, loaded.groups)),
-                 {},
-                 loaded.effects,
-                 loaded.groups.names,
-                 call.time_limit_s};
-    for (const auto& knob : radiosity::solve_knobs(app::solver_of(call, loaded.scene, common))) {
-      key.knobs.push_back(knob.value);
-    }
-    key.knobs.emplace_back(static_cast<std::uint64_t>(call.indirect));
-    for (auto kept = lights.begin(); kept != lights.end(); ++kept) {
-      if (!(kept->first == key)) continue;
-      lights.splice(lights.begin(), lights, kept);
-      return lights.front().second;
-    }
-    app::Solved light = app::find_light(
+    const app::Solved& light = lights.take(
         {call, common, loaded, *query, {}, [] { return app::Interrupt::asked(); }}, times);
     leave_if_asked();
-    solves += light.solved ? 1 : 0;
-    lights.emplace_front(std::move(key), std::move(light));
-    if (lights.size() > most_kept) lights.pop_back();
-    return lights.front().second;
+    return light;
   }
 };
 
@@ -311,7 +272,7 @@ std::string Session::work() const {
   const State& s = *state_;
   return app::dump({{"read", s.reads},
                     {"structured", s.structures},
-                    {"solved", s.solves},
+                    {"solved", s.solves + s.lights.solves()},
                     {"drawn", s.pictures}});
 }
 
@@ -334,7 +295,7 @@ std::shared_ptr<Frame> Session::render(const std::string& request_text,
                     !light);
   app::Solved given;
   if (light) {
-    if (light->kept->parts != digests_of(radiosity::scene_parts(s.loaded.scene, s.loaded.groups))) {
+    if (light->kept->parts != app::KeptLights::digests_of(s.loaded)) {
       throw base::Error(base::Blame::Input, "solution",
                         "is of another scene, or of this one before "
                         "geometry, materials or lights changed",
@@ -407,7 +368,7 @@ std::shared_ptr<Light> Session::solve(const std::string& request_text) {
   }
   light->kept = std::make_shared<Light::Kept>(
       Light::Kept{std::move(solved.solution), app::solve_options(s.loaded.scene, common),
-                  digests_of(radiosity::scene_parts(s.loaded.scene, s.loaded.groups))});
+                  app::KeptLights::digests_of(s.loaded)});
   return light;
 }
 

@@ -3,6 +3,7 @@
 // scene_file.h reads one from a TOML file and checks it completely.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <glm/gtc/quaternion.hpp>
@@ -249,14 +250,21 @@ struct Orbit {
 enum class FilterShape { Box, Triangle, Gaussian, BlackmanHarris };
 [[nodiscard]] std::string_view filter_name(FilterShape shape);  // name in scene files
 
+// Distortion of the lens, with OpenCV's coefficients (scenes/view/projection.h).
+enum class Distortion { None, BrownConrady, Fisheye };
+
 struct Camera {
   std::string name;
   Vec3 position{0.0};
   Vec3 look_at{0.0, 0.0, 1.0};
   Vec3 up{0.0, 0.0, 1.0};
-  double fov_deg = 40.0;  // vertical, full
+  double fov_deg = 40.0;  // vertical, full; with intrinsics 2 atan(rows / (2 fy))
   int columns = 512;
   int rows = 512;
+  // fx, fy, cx, cy in pixels of columns x rows; the upper left corner is (0, 0). Unset: by fov_deg.
+  std::optional<std::array<double, 4>> intrinsics;
+  Distortion distortion = Distortion::None;
+  std::array<double, 5> distortion_k{};  // k1, k2, p1, p2, k3; of a fisheye k1 to k4
   double focus_m = 0.0;      // } thin lens when both are positive
   double aperture_m = 0.0;   // } diameter
   std::string cctv;          // a [[cctv]] of the scene or a built-in one; empty: none

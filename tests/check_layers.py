@@ -17,7 +17,7 @@ import sys
 # folder.
 ROOMS = {
     "base": [".", "numbers", "ranks", "input", "files", "pixels"],
-    "scenes": ["texture", ".", "text", "reflect", "light", "mesh/gltf", "mesh", "sky", "time", "effects", "health", "round", "plausible", "read"],
+    "scenes": ["texture", ".", "view", "text", "reflect", "light", "mesh/gltf", "mesh", "sky", "time", "effects", "health", "round", "plausible", "read"],
     "radiosity": ["patches", "bodies", "factors", "objects", "direct", ".", "store", "exact/polygon",
                   "exact/occlusion", "exact"],
     "raytrace": ["camera", "frame", "light", "incoming", "surfaces", "solve_control", "paths", "share", "gather", "shade",
@@ -26,7 +26,7 @@ ROOMS = {
     "studies": [".", "cost", "targets", "light", "sight", "why", "orbit",
                 "compare", "accuracy"],
     "app": [".", "parts", "cctv", "call", "render", "tools", "study", "report", "views", "visibility", "compare",
-            "accuracy", "console"],
+            "accuracy", "console", "dataset"],
     "python": ["."],
 }
 LAYERS = list(ROOMS)

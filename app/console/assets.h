@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The console's page without data, generated from console/ by the build; no library, no Node.js.
+// The pages of the console and of `view` without their data, from console/ by the build: no
+// library, no Node.js.
 #pragma once
 
 #include <string_view>
@@ -11,5 +12,11 @@ namespace earthshine::app {
 [[nodiscard]] std::string_view console_script();
 // "sha256-…" of the script, as a content security policy names it.
 [[nodiscard]] std::string_view console_script_hash();
+
+// Beside the console's style.
+[[nodiscard]] std::string_view view_style();
+[[nodiscard]] std::string_view view_body();
+[[nodiscard]] std::string_view view_script();
+[[nodiscard]] std::string_view view_script_hash();
 
 }  // namespace earthshine::app

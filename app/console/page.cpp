@@ -116,22 +116,29 @@ void ConsolePage::add(const ConsoleView& view) {
        {"targets", targets}});
 }
 
-std::string ConsolePage::html() const {
+std::string page_of(const PageParts& parts, const Json& data,
+                    const std::vector<std::string>& blobs) {
   // Nothing may be loaded, and only the program's own script may run.
   std::string page = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
       "style-src 'unsafe-inline'; script-src '{}'; base-uri 'none'; form-action 'none'\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>{}: lighting console</title>\n<style>\n{}</style>\n</head>\n<body>\n{}",
-      console_script_hash(), escaped(data_["scene"].get<std::string>()), console_style(),
-      console_body());
-  page += fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n", island(data_));
-  for (std::size_t k = 0; k < blobs_.size(); ++k) {
-    page += fmt::format("<script type=\"text/plain\" id=\"b{}\">{}</script>\n", k, blobs_[k]);
+      "<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n{}",
+      parts.script_hash, escaped(parts.title), parts.style, parts.body);
+  page += fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n", island(data));
+  for (std::size_t k = 0; k < blobs.size(); ++k) {
+    page += fmt::format("<script type=\"text/plain\" id=\"b{}\">{}</script>\n", k, blobs[k]);
   }
-  page += fmt::format("<script>{}</script>\n</body>\n</html>\n", console_script());
+  page += fmt::format("<script>{}</script>\n</body>\n</html>\n", parts.script);
   return page;
+}
+
+std::string ConsolePage::html() const {
+  return page_of(
+      {data_["scene"].get<std::string>() + ": lighting console", std::string(console_style()),
+       console_body(), console_script(), console_script_hash()},
+      data_, blobs_);
 }
 
 }  // namespace earthshine::app

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/console/layers.h"
@@ -11,6 +12,15 @@ namespace earthshine::app {
 
 // Maximum size in bytes; browsers open larger pages slowly.
 inline constexpr std::size_t most_page_bytes = 30'000'000;
+
+// A page without its data. The hash is of the script, the only one that may run.
+struct PageParts {
+  std::string title, style;
+  std::string_view body, script, script_hash;
+};
+// blobs: base64, in elements "b0", "b1" ... of the page.
+[[nodiscard]] std::string page_of(const PageParts& parts, const Json& data,
+                                  const std::vector<std::string>& blobs);
 
 class ConsolePage {
  public:

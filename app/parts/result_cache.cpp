@@ -73,6 +73,13 @@ Json camera_cache_key(const scenes::Camera& camera) {
   base::Digest digest;
   for (const Vec3& v : {camera.position, camera.look_at, camera.up}) digest.add(v);
   for (const double x : {camera.fov_deg, camera.focus_m, camera.aperture_m}) digest.add(x);
+  if (camera.intrinsics) {
+    for (const double x : *camera.intrinsics) digest.add(x);
+    digest.add(static_cast<double>(camera.columns));
+    digest.add(static_cast<double>(camera.rows));
+  }
+  digest.add(static_cast<double>(static_cast<int>(camera.distortion)));
+  for (const double x : camera.distortion_k) digest.add(x);
   return digest.text();
 }
 

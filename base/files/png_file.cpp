@@ -76,6 +76,7 @@ std::vector<png_text> text_chunks(const Texts& texts) {
 struct Picture {
   png_uint_32 width, height;
   int colour_type;
+  int bits;
   const png_byte* const* rows;
   const png_text* text;
   int text_count;
@@ -87,10 +88,10 @@ constexpr int compression_level = 4;
 // No objects with destructors here (see Sink). Returns false if libpng failed.
 bool encode(png_structp png, png_infop info, const Picture& picture) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
-  png_set_IHDR(png, info, picture.width, picture.height, 8, picture.colour_type, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(png, info, picture.width, picture.height, picture.bits, picture.colour_type,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_compression_level(png, compression_level);
-  png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+  if (picture.bits == 8) png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
   if (picture.text_count > 0) png_set_text(png, info, picture.text, picture.text_count);
   png_write_info(png, info);
   for (png_uint_32 y = 0; y < picture.height; ++y) png_write_row(png, picture.rows[y]);
@@ -173,6 +174,40 @@ void open(Source& source, const std::filesystem::path& path) {
 
 }  // namespace
 
+namespace {
+
+// bytes: rows of equal length, numbers of 16 bits with the high byte first.
+void write_rows(const std::filesystem::path& path, Picture picture, std::span<const png_byte> bytes,
+                const Texts& text) {
+  std::vector<const png_byte*> rows(picture.height);
+  const std::size_t stride = bytes.size() / picture.height;
+  for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = bytes.data() + y * stride;
+  const std::vector<png_text> chunks = text_chunks(text);
+  picture.rows = rows.data();
+  picture.text = chunks.data();
+  picture.text_count = static_cast<int>(chunks.size());
+
+  Sink sink;
+  png_structp png =
+      png_create_write_struct(PNG_LIBPNG_VER_STRING, &sink, keep_message, ignore_warning);
+  if (png == nullptr) throw std::bad_alloc();
+  png_infop info = png_create_info_struct(png);
+  bool encoded = false;
+  if (info != nullptr) {
+    png_set_write_fn(png, &sink, append_bytes, flush_nothing);
+    encoded = encode(png, info, picture);
+  }
+  png_destroy_write_struct(&png, &info);
+  if (!encoded) {
+    throw Error(Blame::Work, path.string(),
+                std::string("cannot be written: ") +
+                    (sink.message[0] != '\0' ? sink.message : "out of memory"));
+  }
+  write_text(path, sink.bytes);
+}
+
+}  // namespace
+
 void write_png(const std::filesystem::path& path, int width, int height, int channels,
                std::span<const std::uint8_t> pixels, const Texts& text) {
   if (width < 1 || height < 1 || (channels != 1 && channels != 3)) {
@@ -186,30 +221,29 @@ void write_png(const std::filesystem::path& path, int width, int height, int cha
   if (pixels.size() != stride * static_cast<std::size_t>(height)) {
     throw Error(Blame::Work, path.string(), "the pixel count does not match the picture's size");
   }
-  std::vector<const png_byte*> rows(static_cast<std::size_t>(height));
-  for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = pixels.data() + y * stride;
-  const std::vector<png_text> chunks = text_chunks(text);
+  write_rows(path,
+             {static_cast<png_uint_32>(width), static_cast<png_uint_32>(height),
+              channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, 8, nullptr, nullptr, 0},
+             pixels, text);
+}
 
-  Sink sink;
-  png_structp png =
-      png_create_write_struct(PNG_LIBPNG_VER_STRING, &sink, keep_message, ignore_warning);
-  if (png == nullptr) throw std::bad_alloc();
-  png_infop info = png_create_info_struct(png);
-  bool encoded = false;
-  if (info != nullptr) {
-    png_set_write_fn(png, &sink, append_bytes, flush_nothing);
-    encoded = encode(png, info,
-                     {static_cast<png_uint_32>(width), static_cast<png_uint_32>(height),
-                      channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, rows.data(),
-                      chunks.data(), static_cast<int>(chunks.size())});
+void write_png16(const std::filesystem::path& path, int width, int height,
+                 std::span<const std::uint16_t> pixels) {
+  if (width < 1 || height < 1 ||
+      pixels.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
+    throw Error(Blame::Work, path.string(), "the pixel count does not match the picture's size");
   }
-  png_destroy_write_struct(&png, &info);
-  if (!encoded) {
-    throw Error(Blame::Work, path.string(),
-                std::string("cannot be written: ") +
-                    (sink.message[0] != '\0' ? sink.message : "out of memory"));
+  if (another_rank_writes()) return;
+  std::vector<png_byte> bytes;
+  bytes.reserve(2 * pixels.size());
+  for (const std::uint16_t value : pixels) {
+    bytes.push_back(static_cast<png_byte>(value >> 8));
+    bytes.push_back(static_cast<png_byte>(value & 255));
   }
-  write_text(path, sink.bytes);
+  write_rows(path,
+             {static_cast<png_uint_32>(width), static_cast<png_uint_32>(height),
+              PNG_COLOR_TYPE_GRAY, 16, nullptr, nullptr, 0},
+             bytes, {});
 }
 
 Picture8 read_png(const std::filesystem::path& path) {

@@ -18,6 +18,10 @@ void write_png(const std::filesystem::path& path, int width, int height, int cha
                std::span<const std::uint8_t> pixels,
                const std::vector<std::pair<std::string, std::string>>& text = {});
 
+// Grey of 16 bits, without a transfer function: depths. Throws as above.
+void write_png16(const std::filesystem::path& path, int width, int height,
+                 std::span<const std::uint16_t> pixels);
+
 // 8 bits per channel, in display values.
 struct Picture8 {
   int width = 0;

@@ -30,7 +30,8 @@ enum class Stream : std::uint32_t {
   ErrorBudget,
   Residual,
   GatherOrigin,
-  ShutInLight
+  ShutInLight,
+  Dataset
 };
 
 // 64-bit mixing function (finaliser of SplitMix64, Steele et al. 2014).

@@ -57,7 +57,7 @@ class Entry:
 
 
 class Camera(Entry):
-    """A [[camera]]: position, look_at, up, fov_deg (vertical, full), resolution (columns, rows), focus and aperture (m), cctv ..."""
+    """A [[camera]]: position, look_at, up, fov_deg (vertical, full) or K, distortion, fisheye, resolution (columns, rows), focus and aperture (m), cctv ..."""
 
     @property
     def to_world(self) -> np.ndarray:
@@ -84,8 +84,14 @@ class Camera(Entry):
 
     @property
     def K(self) -> np.ndarray:  # noqa: N802 - the field's name
-        """3x3 in pixels of `resolution`, the centre of the top left pixel at (0.5, 0.5)."""
+        """3x3 in pixels of `resolution`, the centre of the top left pixel at (0.5, 0.5): OpenCV's has cx and cy less 0.5.
+        Settable; it replaces fov_deg of the scene file."""
         return np.array(self.info["K"]).reshape(3, 3)
+
+    @K.setter
+    def K(self, matrix: Any) -> None:  # noqa: N802 - the field's name
+        self._scene.set(f"{self._path}.pixel_origin", "corner")
+        self._scene.set(f"{self._path}.K", np.asarray(matrix, dtype=float).tolist())
 
 
 class Body(Entry):

@@ -49,8 +49,7 @@ CameraModel make_camera_model(const scenes::Camera& camera, int columns, int row
   model.forward = glm::normalize(camera.look_at - camera.position);
   model.right = glm::normalize(glm::cross(model.forward, camera.up));
   model.up = glm::cross(model.right, model.forward);
-  model.half_height = std::tan(base::radians(camera.fov_deg / 2));
-  model.half_width = model.half_height * columns / rows;
+  model.projection = scenes::Projection(camera, columns, rows);
   model.columns = columns;
   model.rows = rows;
   if (camera.aperture_m > 0.0 && camera.focus_m > 0.0) {
@@ -58,6 +57,17 @@ CameraModel make_camera_model(const scenes::Camera& camera, int columns, int row
     model.lens_radius_m = camera.aperture_m / 2;
   }
   return model;
+}
+
+Vec3 CameraModel::to_camera(const Vec3& point) const {
+  const Vec3 way = point - position;
+  return {glm::dot(way, right), -glm::dot(way, up), glm::dot(way, forward)};
+}
+
+double CameraModel::pixel_angle(const Vec3& direction) const {
+  const double on_axis = 2.0 * projection.half_height / rows;
+  if (!projection.is_distorted()) return on_axis;
+  return on_axis / std::sqrt(projection.magnification(to_camera(position + direction)));
 }
 
 Ray CameraModel::ray(double x, double y, double lens_u, double lens_v) const {
@@ -68,41 +78,43 @@ Ray CameraModel::ray(double x, double y, double lens_u, double lens_v) const {
 }
 
 Vec3 CameraModel::direction_from(const Vec3& on_lens, double x, double y) const {
-  const double sx = (2.0 * x / columns - 1.0) * half_width;
-  const double sy = (1.0 - 2.0 * y / rows) * half_height;
-  const Vec3 through = forward + sx * right + sy * up;
+  const Vec3 in_camera = projection.direction({x / columns, y / rows});
+  const Vec3 through = in_camera.z * forward + in_camera.x * right - in_camera.y * up;
   if (lens_radius_m <= 0.0) return glm::normalize(through);
   const Vec3 in_focus = position + focus_m * through;
   return glm::normalize(in_focus - on_lens);
 }
 
 glm::dvec2 CameraModel::film_from(const Vec3& on_lens, const Vec3& point) const {
-  const Vec3 way = point - on_lens, off = on_lens - position;
-  const double depth = glm::dot(way, forward), focus = lens_radius_m > 0.0 ? focus_m : 1.0;
-  const double sx = glm::dot(off, right) / focus + glm::dot(way, right) / depth;
-  const double sy = glm::dot(off, up) / focus + glm::dot(way, up) / depth;
-  return {0.5 * (sx / half_width + 1.0) * columns, 0.5 * (1.0 - sy / half_height) * rows};
+  const glm::dvec2 place = projection.place(through_lens(on_lens, point));
+  return {place.x * columns, place.y * rows};
+}
+
+// The direction in which the centre of the lens has the same place of the film.
+Vec3 CameraModel::through_lens(const Vec3& on_lens, const Vec3& point) const {
+  const Vec3 way = to_camera(position + (point - on_lens));
+  return lens_radius_m > 0.0 ? way + way.z / focus_m * to_camera(on_lens) : way;
 }
 
 double CameraModel::film_per_m2(const Vec3& on_lens, const Vec3& point, const Vec3& normal) const {
-  // A solid angle over the cube of its cosine to the axis is its area at unit distance.
   const Vec3 way = point - on_lens;
-  const double depth = glm::dot(way, forward), px = 0.5 * columns / half_width;
-  return px * px * std::abs(glm::dot(way, normal)) / (depth * depth * depth);
+  const double px2 = 0.25 * columns * rows / (projection.half_width * projection.half_height);
+  const double depth = glm::dot(way, forward), across = std::abs(glm::dot(way, normal));
+  if (lens_radius_m > 0.0) {
+    return px2 * projection.magnification(through_lens(on_lens, point)) * across /
+           (depth * depth * depth);
+  }
+  const double distance = glm::length(way);
+  return px2 * projection.film_per_sr(to_camera(point)) * across / (distance * distance * distance);
 }
 
 CameraMatrices camera_matrices(const CameraModel& camera) {
   CameraMatrices m;
-  const double columns = camera.columns, rows = camera.rows;
-  m.k = {columns / (2.0 * camera.half_width),
-         0.0,
-         columns / 2.0,
-         0.0,
-         rows / (2.0 * camera.half_height),
-         rows / 2.0,
-         0.0,
-         0.0,
-         1.0};
+  const scenes::Projection& p = camera.projection;
+  const double fx = 0.5 * camera.columns / p.half_width, fy = 0.5 * camera.rows / p.half_height;
+  const double cx = 0.5 * camera.columns - fx * p.middle.x,
+               cy = 0.5 * camera.rows - fy * p.middle.y;
+  m.k = {fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0};
   const Vec3 &x = camera.right, &z = camera.forward, &o = camera.position;
   const Vec3 down = -camera.up;
   m.to_world = {x.x, down.x, z.x, o.x, x.y, down.y, z.y, o.y,
@@ -112,16 +124,16 @@ CameraMatrices camera_matrices(const CameraModel& camera) {
   const double ox = -glm::dot(o, x), oy = -glm::dot(o, up), oz = -glm::dot(o, z);
   m.world_to_camera = {x.x, up.x, z.x, 0.0, x.y, up.y, z.y, 0.0,
                        x.z, up.z, z.z, 0.0, ox,  oy,   oz,  1.0};
-  // Each row times the projection: u = x / (2 w) + z / 2, v = z / 2 - y / (2 h), z - 1, over z.
+  // Each row times the projection: (fx x + cx z, cy z - fy y) by the picture's size, z - 1, over z.
   for (std::size_t row = 0; row < 4; ++row) {
     const double* const in = &m.world_to_camera[4 * row];
     double* const out = &m.world_to_ndc[4 * row];
-    out[0] = in[0] / (2.0 * camera.half_width) + in[2] / 2.0;
-    out[1] = in[2] / 2.0 - in[1] / (2.0 * camera.half_height);
+    out[0] = (fx * in[0] + cx * in[2]) / camera.columns;
+    out[1] = (cy * in[2] - fy * in[1]) / camera.rows;
     out[2] = in[2] - in[3];
     out[3] = in[2];
   }
-  m.screen_window_width = 2.0 * camera.half_width;
+  m.screen_window_width = 2.0 * p.half_width;
   return m;
 }
 

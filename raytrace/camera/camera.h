@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera rays: pinhole or thin lens.
+// Pixel to ray: pinhole or thin lens, with the projection of scenes/view.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 
 #include "scenes/ray_query.h"
 #include "scenes/scene.h"
+#include "scenes/view/projection.h"
 
 namespace earthshine::raytrace {
 
@@ -31,32 +32,57 @@ struct Window {
   }
 };
 
-// The camera's axes and the half size of its picture at unit distance.
 struct CameraModel {
   Vec3 position{0.0}, forward{0.0}, right{0.0}, up{0.0};
-  double half_width = 0.0, half_height = 0.0;  // tangents of the half fields of view
-  double focus_m = 0.0;                        // distance of the plane in focus, along the axis
-  double lens_radius_m = 0.0;                  // 0: pinhole
+  scenes::Projection projection;
+  double focus_m = 0.0;        // distance of the plane in focus, along the axis
+  double lens_radius_m = 0.0;  // 0: pinhole
   int columns = 0, rows = 0;
 
   // (x, y) in pixels from the top left corner: the centre of pixel (i, j) is (i + 0.5, j + 0.5).
   // (lens_u, lens_v) in [0,1)^2 determine the point of the lens.
   [[nodiscard]] Ray ray(double x, double y, double lens_u, double lens_v) const;
 
-  // For a point of the lens (the position of a pinhole): the unit direction of (x, y); the film
-  // position of a point in front of the camera, px; and px^2 per m^2 of a surface there.
+  // In the axes of the projection: x right, y down, z forward, from the position.
+  [[nodiscard]] Vec3 to_camera(const Vec3& point) const;
+  // Angle between neighbouring pixels toward a direction, rad; for a pinhole that on the axis.
+  [[nodiscard]] double pixel_angle(const Vec3& direction) const;
+
+  // Through a point of the lens (of a pinhole the position): the direction of (x, y), of unit
+  // length; where a point in front of the camera is seen, px; and how many px^2 a square metre
+  // there is.
   [[nodiscard]] Vec3 direction_from(const Vec3& on_lens, double x, double y) const;
   [[nodiscard]] glm::dvec2 film_from(const Vec3& on_lens, const Vec3& point) const;
   [[nodiscard]] double film_per_m2(const Vec3& on_lens, const Vec3& point,
                                    const Vec3& normal) const;
+
+ private:
+  [[nodiscard]] Vec3 through_lens(const Vec3& on_lens, const Vec3& point) const;
 };
 
-// Square pixels; fov_deg is the vertical field for any size of the picture.
 [[nodiscard]] CameraModel make_camera_model(const scenes::Camera& camera, int columns, int rows);
 
-// A camera as the matrices of other programs, to project positions into its picture and to cast
-// pixels back into the scene. Pixels count from the picture's top left corner: the centre of the
-// first one is (0.5, 0.5).
+// Splits a line of the scene into pieces whose pictures are straight to a fraction of a pixel: the
+// whole line without distortion, pieces of at most a degree with it.
+template <class Use>
+void for_straight_pieces(const CameraModel& camera, const Vec3& a, const Vec3& b, const Use& use,
+                         int deepest = 12) {
+  const Vec3 to_a = a - camera.position, to_b = b - camera.position;
+  constexpr double one_degree = 0.99985;  // its cosine
+  if (!camera.projection.is_distorted() || deepest == 0 ||
+      glm::dot(to_a, to_b) >= one_degree * glm::length(to_a) * glm::length(to_b)) {
+    use(a, b);
+    return;
+  }
+  const Vec3 middle = 0.5 * (a + b);
+  for_straight_pieces(camera, a, middle, use, deepest - 1);
+  for_straight_pieces(camera, middle, b, use, deepest - 1);
+}
+
+// A camera as the matrices that other programs expect, so that positions can be projected into its
+// picture and pixels cast back into the scene.
+
+// Pixels count from the picture's top left corner: the centre of the first one is (0.5, 0.5).
 struct CameraMatrices {
   // Computer vision: axes x right, y down, z forward; points are columns; matrices row by row.
   //   (u w, v w, w) = K (x, y, z)      camera (m) to pixels; K = fx 0 cx  0 fy cy  0 0 1

@@ -84,12 +84,6 @@ std::optional<FeatureEdge> classify(const scenes::Scene& scene, std::span<const 
 
 // ---- visible parts of edges
 
-// In camera axes: right, up, forward.
-Vec3 to_camera(const CameraModel& camera, const Vec3& p) {
-  const Vec3 d = p - camera.position;
-  return {glm::dot(d, camera.right), glm::dot(d, camera.up), glm::dot(d, camera.forward)};
-}
-
 class Prober {
  public:
   Prober(const FeatureEdge& edge, const scenes::RayQuery& query, const CameraModel& camera)
@@ -124,8 +118,8 @@ class Prober {
  private:
   // Clips parts behind the camera. (a_, b_): the ends in camera axes.
   bool in_front() {
-    a_ = to_camera(camera_, edge_.from);
-    b_ = to_camera(camera_, edge_.to);
+    a_ = camera_.to_camera(edge_.from);
+    b_ = camera_.to_camera(edge_.to);
     const double near = near_share * glm::length(b_ - a_);
     if (a_.z <= near && b_.z <= near) return false;
     if (a_.z < near) a_ += (b_ - a_) * ((near - a_.z) / (b_.z - a_.z));
@@ -159,8 +153,8 @@ class Prober {
   }
 
   [[nodiscard]] glm::dvec2 pixel(const Vec3& p) const {
-    return {(p.x / p.z / camera_.half_width + 1.0) * 0.5 * camera_.columns,
-            (1.0 - p.y / p.z / camera_.half_height) * 0.5 * camera_.rows};
+    const glm::dvec2 at = camera_.projection.place(p);
+    return {at.x * camera_.columns, at.y * camera_.rows};
   }
 
   // The point of the edge from a to b at the fraction t of its image: 1/z is linear there.
@@ -173,9 +167,9 @@ class Prober {
     const Vec3 p = in_space(a_, b_, t);
     const double distance = glm::length(p);
     const Vec3 direction =
-        (p.x * camera_.right + p.y * camera_.up + p.z * camera_.forward) / distance;
+        (p.x * camera_.right - p.y * camera_.up + p.z * camera_.forward) / distance;
     const double slack =
-        std::max(depth_slack_px * p.z * 2.0 * camera_.half_height / camera_.rows,
+        std::max(depth_slack_px * p.z * camera_.pixel_angle(direction),
                  offset_slack * (query_.offset_at_m(camera_.position + distance * direction) +
                                  query_.distance_error_m(distance)));
     query_.set(rays, lane, camera_.position, direction, std::max(0.0, distance - slack));
@@ -244,7 +238,13 @@ std::vector<WireSegment> visible_wire(const std::vector<FeatureEdge>& edges,
     const std::size_t end = std::min(edges.size(), (chunk + 1) * edges_per_chunk);
     for (std::size_t k = chunk * edges_per_chunk; k < end; ++k) {
       if (edges[k].silhouette_only && !on_silhouette(edges[k], camera.position)) continue;
-      Prober(edges[k], query, camera).append_visible(parts[chunk]);
+      for_straight_pieces(camera, edges[k].from, edges[k].to,
+                          [&](const Vec3& from, const Vec3& to) {
+                            FeatureEdge piece = edges[k];
+                            piece.from = from;
+                            piece.to = to;
+                            Prober(piece, query, camera).append_visible(parts[chunk]);
+                          });
     }
   });
   std::vector<WireSegment> segments;

@@ -58,11 +58,10 @@ bool GatherField::place(const Ray& ray, const scenes::Hit& hit, GatherPoint& poi
                         RayStart& start) const {
   GatherRequest wanted;
   if (hit.missed() || !surface_(hit, wanted)) return false;
-  const double pixel_m = 2.0 * camera_.half_height / camera_.rows;  // at unit distance
   wanted.position = scenes::hit_position(world_.scene, hit, ray.origin, ray.direction);
   point.position = glm::vec3(wanted.position - origin_);
   point.normal = glm::vec3(wanted.normal);
-  point.spacing_m = static_cast<float>(hit.t * pixel_m);
+  point.spacing_m = static_cast<float>(hit.t * camera_.pixel_angle(ray.direction));
   point.reach_m = std::numeric_limits<float>::max();
   point.reflectance = static_cast<float>(wanted.reflectance);
   point.lobe = static_cast<float>(wanted.lobe);

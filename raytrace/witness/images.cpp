@@ -372,13 +372,12 @@ WitnessScene::WitnessScene(const ShadingScene& of, const CameraModel& through, d
 Spot WitnessScene::spot_at(const Vec3& point, double radius_m) const {
   Spot spot;
   const Vec3 way = point - camera.position;
-  const double depth = glm::dot(way, camera.forward);
   spot.film = camera.film_from(camera.position, point);
   const Vec3 rim = camera.position + camera.lens_radius_m * camera.right;
   spot.blur_px = glm::length(camera.film_from(rim, point) - spot.film);
-  // Off the axis, the tangent grows with the square of the secant of the angle to the axis.
-  spot.radius_px =
-      radius_m * glm::length(way) / (depth * depth) * camera.rows / (2.0 * camera.half_height);
+  spot.radius_px = radius_m / glm::length(way) *
+                   camera.projection.film_per_rad(camera.to_camera(point)) * camera.rows /
+                   (2.0 * camera.projection.half_height);
   return spot;
 }
 

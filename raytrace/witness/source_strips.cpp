@@ -86,7 +86,9 @@ class SourceStrips {
     if (depth_a <= near && depth_b <= near) return;
     if (depth_a < near) a = glm::mix(a, b, (near - depth_a) / (depth_b - depth_a));
     if (depth_b < near) b = glm::mix(b, a, (near - depth_b) / (depth_a - depth_b));
-    add_line(camera_.film_from(camera_.position, a), camera_.film_from(camera_.position, b));
+    for_straight_pieces(camera_, a, b, [this](const Vec3& from, const Vec3& to) {
+      add_line(camera_.film_from(camera_.position, from), camera_.film_from(camera_.position, to));
+    });
   }
 
   void add_line(const glm::dvec2& a, const glm::dvec2& b) {

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "scenes/text/message_text.h"
+#include "scenes/view/projection.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -25,25 +26,22 @@ constexpr double small_m = 0.1;
 constexpr double usual_fields_from_deg = 15.0, usual_fields_to_deg = 150.0;
 
 struct Frame {
-  Vec3 forward, right, up;
-  double half_width, half_height;
+  Vec3 position, forward, right, up;
+  Projection projection;
 
   explicit Frame(const Camera& camera)
-      : forward(glm::normalize(camera.look_at - camera.position)),
+      : position(camera.position),
+        forward(glm::normalize(camera.look_at - camera.position)),
         right(glm::normalize(glm::cross(forward, camera.up))),
         up(glm::cross(right, forward)),
-        half_width(0.0),
-        half_height(std::tan(base::radians(camera.fov_deg / 2.0))) {
-    half_width = half_height * camera.columns / camera.rows;
+        projection(camera, camera.columns, camera.rows) {}
+  [[nodiscard]] Vec3 direction(const glm::dvec2& place) const {
+    const Vec3 d = projection.direction(place);
+    return glm::normalize(d.z * forward + d.x * right - d.y * up);
   }
-  // x, y from -1 to 1, y up.
-  [[nodiscard]] Vec3 direction(double x, double y) const {
-    return glm::normalize(forward + x * half_width * right + y * half_height * up);
-  }
-  [[nodiscard]] bool shows(const Vec3& from_camera) const {
-    const double depth = glm::dot(from_camera, forward);
-    return depth > 0.0 && std::abs(glm::dot(from_camera, right)) <= half_width * depth &&
-           std::abs(glm::dot(from_camera, up)) <= half_height * depth;
+  [[nodiscard]] bool shows(const Vec3& point) const {
+    const Vec3 way = point - position;
+    return projection.shows({glm::dot(way, right), -glm::dot(way, up), glm::dot(way, forward)});
   }
 };
 
@@ -57,7 +55,7 @@ bool shows_a_whole_object(const Scene& scene, const View& view) {
     bool whole = true;
     for (std::uint32_t t = 0; t < object.triangle_count && whole; ++t) {
       for (const std::uint32_t v : scene.triangles[object.first_triangle + t].vertex) {
-        whole = whole && frame.shows(scene.vertices[v] - view.camera->position);
+        whole = whole && frame.shows(scene.vertices[v]);
       }
     }
     if (whole) return true;
@@ -152,9 +150,9 @@ View look(const Scene& scene, const RayQuery& query, const Camera& camera,
   for (std::size_t k = 0; k < grid * grid; ++k) {
     ++view.rays;
     const auto place = [](std::size_t n) {
-      return (2.0 * static_cast<double>(n) + 1.0) / static_cast<double>(grid) - 1.0;
+      return (static_cast<double>(n) + 0.5) / static_cast<double>(grid);
     };
-    const Vec3 direction = frame.direction(place(k % grid), place(k / grid));
+    const Vec3 direction = frame.direction({place(k % grid), 1.0 - place(k / grid)});
     Vec3 origin = camera.position;
     for (int panes = 0; panes < most_panes_passed; ++panes) {
       const Hit hit = query.closest(origin, direction);

@@ -6,13 +6,18 @@
 
 #include "scenes/effects/quality.h"
 #include "scenes/read/scene_parts.h"
+#include "scenes/view/projection.h"
 
 namespace earthshine::scenes {
 namespace {
 
 constexpr std::string_view camera_keys[] = {
-    "name", "position",   "look_at", "up",           "fov_deg",      "focus", "aperture",
-    "cctv", "resolution", "filter",  "filter_width", "range_sensor", "joint"};
+    "name", "position",   "look_at", "up",           "fov_deg",      "focus",  "aperture",
+    "cctv", "resolution", "filter",  "filter_width", "range_sensor", "fx",     "fy",
+    "cx",   "cy",         "K",       "pixel_origin", "distortion",   "fisheye", "joint"};
+constexpr std::string_view pixel_origins[] = {"corner", "center"};
+constexpr Range focal_px{0.0, 1e7, true};
+constexpr Range centre_px{-1e6, 1e6};
 struct FilterRow {
   std::string_view name;
   FilterShape shape;
@@ -65,6 +70,105 @@ void read_lens(Camera& camera, const TableReader& table) {
   }
   camera.focus_m = focus.value_or(0.0);
   camera.aperture_m = aperture.value_or(0.0);
+}
+
+std::vector<double> read_numbers(const TableReader& table, std::string_view key) {
+  std::vector<double> numbers;
+  const auto add = [&](const auto& self, const TomlNode& node) -> void {
+    if (const auto* items = std::get_if<TomlArray>(&node.value)) {
+      for (const TomlNode& item : *items) self(self, item);
+      return;
+    }
+    const auto* whole = std::get_if<std::int64_t>(&node.value);
+    const auto* number = std::get_if<double>(&node.value);
+    if ((whole == nullptr && number == nullptr) || (number != nullptr && !std::isfinite(*number))) {
+      table.fail(key, "holds " + describe(node), "allowed are finite numbers");
+    }
+    numbers.push_back(whole != nullptr ? static_cast<double>(*whole) : *number);
+  };
+  if (const TomlEntry* entry = table.find(key)) add(add, entry->node);
+  return numbers;
+}
+
+// Whether the key replaces `other`: it comes from an override and the other from the file. Two from
+// one place are refused.
+bool replaces(const TableReader& table, std::string_view key, std::string_view other) {
+  const auto is_override = [&](std::string_view one) {
+    return table.where(one).file != table.where().file;
+  };
+  if (is_override(key) == is_override(other)) {
+    table.fail(other, fmt::format("stands beside \"{}\"", key), "a camera has one of them",
+               fmt::format("Remove {} or {}", other, key));
+  }
+  return is_override(key);
+}
+
+// fx and fy or K, in pixels of `resolution`.
+void read_intrinsics(Camera& camera, const TableReader& table) {
+  const bool from_centre =
+      table.choice("pixel_origin", pixel_origins).value_or("corner") == "center";
+  const double shift = from_centre ? 0.5 : 0.0;
+  double fx = table.number("fx", focal_px).value_or(0.0);
+  double fy = table.number("fy", focal_px).value_or(0.0);
+  double cx = table.number("cx", centre_px).value_or(0.5 * camera.columns - shift);
+  double cy = table.number("cy", centre_px).value_or(0.5 * camera.rows - shift);
+  if (table.has("K")) {
+    for (const char* key : {"fx", "fy", "cx", "cy"}) {
+      if (table.has(key) && !replaces(table, "K", key)) {
+        table.fail(key, "is set beside \"K\"", "K has fx, fy, cx and cy", "Set K");
+      }
+    }
+    const std::vector<double> k = read_numbers(table, "K");
+    const bool is_upper =
+        k.size() == 9 && k[1] == 0.0 && k[3] == 0.0 && k[6] == 0.0 && k[7] == 0.0 && k[8] == 1.0;
+    if (!is_upper || !focal_px.holds(k[0]) || !focal_px.holds(k[4]) || !centre_px.holds(k[2]) ||
+        !centre_px.holds(k[5])) {
+      table.fail("K", "is no matrix of a camera without skew",
+                 "it is [[fx, 0, cx], [0, fy, cy], [0, 0, 1]] in pixels, fx and fy above 0");
+    }
+    fx = k[0], cx = k[2], fy = k[4], cy = k[5];
+  }
+  if (!(fx > 0.0) && !(fy > 0.0)) {
+    for (const char* key : {"cx", "cy", "pixel_origin"}) {
+      if (table.has(key)) {
+        table.fail(key, "stands without \"fx\" and \"K\"", "it belongs to intrinsics in pixels");
+      }
+    }
+    return;
+  }
+  if (!(fx > 0.0)) fx = fy;  // square pixels
+  if (!(fy > 0.0)) fy = fx;
+  const char* const given = table.has("K") ? "K" : table.has("fx") ? "fx" : "fy";
+  if (table.has("fov_deg") && !replaces(table, given, "fov_deg")) return;
+  camera.intrinsics = {fx, fy, cx + shift, cy + shift};
+  camera.fov_deg = base::degrees(2.0 * std::atan(camera.rows / (2.0 * fy)));
+}
+
+void read_distortion(Camera& camera, const TableReader& table) {
+  if (table.has("distortion") && table.has("fisheye")) {
+    table.fail("fisheye", "stands beside \"distortion\"", "a lens has one of them");
+  }
+  const char* key = table.has("fisheye") ? "fisheye" : "distortion";
+  if (!table.has(key)) return;
+  const bool is_fisheye = table.has("fisheye");
+  const std::vector<double> k = read_numbers(table, key);
+  if (is_fisheye ? k.size() != 4 : k.size() != 4 && k.size() != 5) {
+    table.fail(
+        key, fmt::format("has {} numbers", k.size()),
+        is_fisheye ? "it is [k1, k2, k3, k4]" : "it is [k1, k2, p1, p2, k3]; k3 may be absent");
+  }
+  camera.distortion = is_fisheye ? Distortion::Fisheye : Distortion::BrownConrady;
+  std::copy(k.begin(), k.end(), camera.distortion_k.begin());
+  if (is_fisheye && camera.aperture_m > 0.0) {
+    table.fail("fisheye", "stands beside \"aperture\"",
+               "a fisheye lens has no plane in focus: its depth of field is unlimited");
+  }
+  if (!Projection(camera, camera.columns, camera.rows).covers_picture()) {
+    table.fail(key, "does not reach the picture's border",
+               "over the whole picture the distance from the principal point grows with the angle "
+               "to the axis",
+               "Check the coefficients and the focal length, which is in pixels of `resolution`");
+  }
 }
 
 void read_filter(Camera& camera, const TableReader& table) {
@@ -142,7 +246,9 @@ Camera read_camera(const TomlNode& node, double unit_m, const JointPoses& joints
   camera.up = pose.rotation * camera.up;
   camera.fov_deg = table.number("fov_deg", {0.0, 180.0, true, true}).value_or(camera.fov_deg);
   read_resolution(camera, table);
+  read_intrinsics(camera, table);
   read_lens(camera, table);
+  read_distortion(camera, table);
   read_filter(camera, table);
   camera.cctv = table.text("cctv").value_or("");
   camera.range_sensor = table.text("range_sensor").value_or("");

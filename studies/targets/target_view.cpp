@@ -126,12 +126,7 @@ bool reaches_frame(const scenes::Scene& scene, const raytrace::CameraModel& mode
   const scenes::Object& record = scene.objects[object];
   for (std::uint32_t k = 0; k < record.triangle_count; ++k) {
     for (const std::uint32_t v : scene.triangles[record.first_triangle + k].vertex) {
-      const Vec3 way = scene.vertices[v] - model.position;
-      const double depth = glm::dot(way, model.forward);
-      if (depth > 0.0 && std::abs(glm::dot(way, model.right)) <= model.half_width * depth &&
-          std::abs(glm::dot(way, model.up)) <= model.half_height * depth) {
-        return true;
-      }
+      if (model.projection.shows(model.to_camera(scene.vertices[v]))) return true;
     }
   }
   return false;
@@ -139,7 +134,7 @@ bool reaches_frame(const scenes::Scene& scene, const raytrace::CameraModel& mode
 
 // Velocity of its centre in pixels per second, to the right and down; 0 behind the camera.
 std::array<double, 2> motion_of(const scenes::Scene& scene, const raytrace::CameraModel& model,
-                                std::uint32_t object, int columns, int rows) {
+                                std::uint32_t object) {
   const scenes::Object& record = scene.objects[object];
   if (record.velocity_m_s == Vec3(0.0) || record.triangle_count == 0) return {0.0, 0.0};
   scenes::Box box;
@@ -148,16 +143,13 @@ std::array<double, 2> motion_of(const scenes::Scene& scene, const raytrace::Came
       box.add(scene.vertices[v]);
     }
   }
-  const Vec3 way = box.middle() - model.position;
-  const double depth = glm::dot(way, model.forward);
-  if (!(depth > 0.0)) return {0.0, 0.0};
-  // d/dt (x / z) = (x' - x z' / z) / z along each axis of the picture.
-  const auto along = [&](const Vec3& axis) {
-    const double toward = glm::dot(record.velocity_m_s, model.forward);
-    return (glm::dot(record.velocity_m_s, axis) - glm::dot(way, axis) * toward / depth) / depth;
-  };
-  return {along(model.right) * 0.5 * columns / model.half_width,
-          -along(model.up) * 0.5 * rows / model.half_height};
+  if (!model.projection.is_before(model.to_camera(box.middle()))) return {0.0, 0.0};
+  // A central difference over a time in which it moves by a millionth of its distance.
+  const Vec3 middle = box.middle(), velocity = record.velocity_m_s;
+  const double dt = 1e-6 * glm::length(middle - model.position) / glm::length(velocity);
+  const glm::dvec2 moved = model.film_from(model.position, middle + dt * velocity) -
+                           model.film_from(model.position, middle - dt * velocity);
+  return {moved.x / (2.0 * dt), moved.y / (2.0 * dt)};
 }
 
 bool touches_border(const Mask& mask, int columns, int rows) {
@@ -220,7 +212,7 @@ std::vector<TargetView> find_targets(const scenes::Scene& scene, const scenes::C
     find_blockers(view, map, alone);
     const raytrace::CameraModel model = raytrace::make_camera_model(camera, map.columns, map.rows);
     view.in_frame = view.pixels_alone > 0 || reaches_frame(scene, model, object);
-    view.motion_px_s = motion_of(scene, model, object, map.columns, map.rows);
+    view.motion_px_s = motion_of(scene, model, object);
     view.cut_by_frame = touches_border(alone, map.columns, map.rows);
     views.push_back(std::move(view));
   }

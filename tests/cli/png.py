@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads the program's 8-bit PNG files with Python's zlib."""
+"""Reads the program's PNG files of 8 and 16 bits with Python's zlib."""
 import struct
 import zlib
 
@@ -11,23 +11,24 @@ def paeth(a, b, c):
 
 
 def pixels(data):
-    """Width, height, channels and all bytes, rows from the top."""
+    """Width, height, channels and all bytes, rows from the top; 16-bit numbers with the high byte first."""
     width, height, depth, colour = struct.unpack(">IIBB", data[16:26])
     channels = {0: 1, 2: 3}[colour]
-    assert data[:8] == b"\x89PNG\r\n\x1a\n" and depth == 8
+    assert data[:8] == b"\x89PNG\r\n\x1a\n" and depth in (8, 16)
+    pixel = channels * depth // 8
     at, packed = 8, b""
     while at < len(data):
         size, kind = struct.unpack(">I4s", data[at:at + 8])
         if kind == b"IDAT":
             packed += data[at + 8:at + 8 + size]
         at += 12 + size
-    raw, stride = zlib.decompress(packed), width * channels
+    raw, stride = zlib.decompress(packed), width * pixel
     above, rows = bytearray(stride), bytearray()
     for y in range(height):
         method, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
         for x in range(stride):
-            left = row[x - channels] if x >= channels else 0
-            corner = above[x - channels] if x >= channels else 0
+            left = row[x - pixel] if x >= pixel else 0
+            corner = above[x - pixel] if x >= pixel else 0
             row[x] = row[x] + [0, left, above[x], (left + above[x]) // 2, paeth(left, above[x], corner)][method] & 255
         rows += row
         above = row

@@ -73,6 +73,15 @@ class Scenes(program.Case):
         scene.render("A", error=0.5)
         self.assertEqual(scene.work, {"read": 5, "structured": 3, "solved": 3, "drawn": 7})
 
+    def test_k_replaces_the_field_of_view(self):
+        scene = self.load()
+        k = np.array([[40, 0, 15], [0, 44, 13], [0, 0, 1]])
+        scene.cameras["A"].K = k
+        scene.cameras["A"].distortion = [-0.1, 0.01, 0, 0]
+        self.assertTrue(np.allclose(scene.cameras["A"].K, k))
+        frame = scene.render("A", error=0.5)
+        self.assertTrue(np.allclose(frame.K, k))
+
     def test_values_are_those_in_force(self):
         scene = self.load(set=["camera.A.fov_deg=35", "material.paint.two_sided=true"])
         self.assertEqual(list(scene.cameras), ["A", "above"])

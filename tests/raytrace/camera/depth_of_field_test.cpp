@@ -30,7 +30,7 @@ scenes::Camera lens(double focus_m, double aperture_m) {
 constexpr int columns = 320, rows = 240;
 
 double blur_px(const CameraModel& model, double aperture_m, double focus_m, double distance_m) {
-  const double focal_px = rows / (2.0 * model.half_height);
+  const double focal_px = rows / (2.0 * model.projection.half_height);
   return aperture_m * focal_px * std::fabs(distance_m - focus_m) / (distance_m * focus_m);
 }
 

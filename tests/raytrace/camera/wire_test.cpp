@@ -97,7 +97,7 @@ TEST(Wire, BoxShowsTheNineEdgesOfItsThreeVisibleFaces) {
   const CameraModel model = make_camera_model(camera, 200, 200);
   const auto pixel = [&](const Vec3& p) {
     const Vec3 d = p - model.position;
-    const double z = glm::dot(d, model.forward) * model.half_height;
+    const double z = glm::dot(d, model.forward) * model.projection.half_height;
     return glm::dvec2(glm::dot(d, model.right), -glm::dot(d, model.up)) * (100.0 / z);
   };
   // Faces x = 1, y = 0 and z = 1 are visible; the three edges at (0, 1, 0) are not.

@@ -1,0 +1,387 @@
+// SPDX-License-Identifier: Apache-2.0
+// `earthshine dataset`: pictures and labels of a scene with drawn cameras, poses and lights. An
+// image depends on the data set's file, the scene and its number alone. Its labels are written
+// last, so that an image with labels is finished.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "app/build_id.h"
+#include "app/call/render_call.h"
+#include "app/cctv/cctv.h"
+#include "app/console.h"
+#include "app/dataset/labels.h"
+#include "app/dataset/recipe.h"
+#include "app/json.h"
+#include "app/memory.h"
+#include "app/options.h"
+#include "app/output.h"
+#include "app/render/draw.h"
+#include "app/render/error_json.h"
+#include "app/render/kept_lights.h"
+#include "base/files/exr_file.h"
+#include "base/files/output_file.h"
+#include "base/files/png_file.h"
+#include "base/tone.h"
+#include "scenes/read/scene_file.h"
+#include "scenes/triangle_point.h"
+
+namespace earthshine::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_attempts = 1000;  // poses of the camera
+constexpr double inside = 0.5;               // winding number of a point in a closed body
+constexpr int directions = 96;               // along which the clearance is measured
+
+struct DatasetCall {
+  std::string recipe, folder, images;
+};
+
+struct Numbers {
+  std::size_t first = 0, last = 0;
+};
+
+// "20-39" or "7"; all of them without --images.
+Numbers numbers_of(const DatasetCall& call, std::size_t count) {
+  Numbers numbers{0, count - 1};
+  if (call.images.empty()) return numbers;
+  const char* const end = call.images.data() + call.images.size();
+  auto [at, error] = std::from_chars(call.images.data(), end, numbers.first);
+  numbers.last = numbers.first;
+  bool good = error == std::errc();
+  if (good && at != end && *at == '-') {
+    const auto second = std::from_chars(at + 1, end, numbers.last);
+    at = second.ptr;
+    good = second.ec == std::errc();
+  }
+  if (!good || at != end || numbers.first > numbers.last || numbers.last >= count) {
+    throw base::Error(base::Blame::Input, "--images", "is \"" + call.images + "\"",
+                      fmt::format("it is FIRST-LAST or one number, from 0 to {}", count - 1));
+  }
+  return numbers;
+}
+
+// What reads and writes a data set's folder.
+class Folder {
+ public:
+  explicit Folder(fs::path path) : path_(std::move(path)) {
+    for (const char* room : {"models", "images", "train/000000/rgb", "train/000000/depth",
+                             "train/000000/mask", "train/000000/mask_visib"}) {
+      fs::path folder = path_;
+      make_folder(folder);
+      for (const fs::path& part : fs::path(room)) make_folder(folder /= part);
+    }
+  }
+  [[nodiscard]] fs::path labels(std::size_t image) const {
+    return path_ / "images" / fmt::format("{:06}.json", image);
+  }
+  [[nodiscard]] fs::path layers(std::size_t image) const {
+    return path_ / "images" / fmt::format("{:06}.exr", image);
+  }
+  [[nodiscard]] fs::path bop(const char* room, std::size_t image) const {
+    return path_ / "train/000000" / room / fmt::format("{:06}.png", image);
+  }
+  [[nodiscard]] fs::path mask(const char* room, std::size_t image, std::size_t target) const {
+    return path_ / "train/000000" / room / fmt::format("{:06}_{:06}.png", image, target);
+  }
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+class DataSet {
+ public:
+  DataSet(const DatasetCall& call, const Common& common)
+      : recipe_(read_recipe(call.recipe)), common_(common), folder_(call.folder) {
+    common_.quiet = true;
+    common_.seed = recipe_.seed;
+    scenes::Scene scene = scenes::read_scene(recipe_.scene, model_overrides());
+    Files inputs = scene.files;
+    inputs.push_back(recipe_.path);
+    refuse_inputs_in(folder_.path(), inputs);
+    key_ = {{"build", build_id()}};
+    for (const fs::path& file : inputs) key_[file.filename().string()] = digest_of_file(file);
+    camera_ = static_cast<std::size_t>(wanted_cameras(recipe_.camera.name.empty()
+                                                          ? std::vector<std::string>{}
+                                                          : std::vector{recipe_.camera.name},
+                                                      scene)
+                                           .front() -
+                                       scene.cameras.data());
+    write_models(scene);
+  }
+
+  [[nodiscard]] const Recipe& recipe() const { return recipe_; }
+  [[nodiscard]] bool is_done(std::size_t image) const { return !labels(image).is_null(); }
+  void make(std::size_t image);
+  // Writes the lists over all images; false where images are missing.
+  bool finish() const;
+
+ private:
+  // Targets that move stand in the axes of their models.
+  [[nodiscard]] std::vector<std::string> model_overrides() const {
+    std::vector<std::string> overrides = recipe_.overrides;
+    for (const DrawnTarget& target : recipe_.targets) {
+      if (!target.moves) continue;
+      for (const char* key : {"translate", "rotate"}) {
+        overrides.push_back(fmt::format("object.{}.{}=[0, 0, 0]", target.name, key));
+      }
+    }
+    return overrides;
+  }
+  [[nodiscard]] Json labels(std::size_t image) const {
+    if (!fs::is_regular_file(folder_.labels(image))) return {};
+    Json known = json_in(folder_.labels(image));
+    if (!known.is_object() || !known.contains("key") || known["key"] != key_) return {};
+    return known;
+  }
+  [[nodiscard]] std::vector<std::uint32_t> targets_in(const scenes::Scene& scene) const;
+  void write_models(const scenes::Scene& scene) const;
+  void place_camera(scenes::Scene& scene, const scenes::RayQuery& query, std::size_t image) const;
+  void write_picture(const Studio& studio, const scenes::Camera& camera, const Drawn& drawn,
+                     const Draw& draw, std::size_t image) const;
+
+  Recipe recipe_;
+  Common common_;
+  Folder folder_;
+  Json key_;
+  std::size_t camera_ = 0;
+  KeptLights lights_;
+};
+
+std::vector<std::uint32_t> DataSet::targets_in(const scenes::Scene& scene) const {
+  std::vector<std::uint32_t> objects;
+  for (const DrawnTarget& target : recipe_.targets) {
+    const auto found = std::ranges::find(scene.objects, target.name, &scenes::Object::name);
+    if (found == scene.objects.end()) {
+      throw base::Error(base::Blame::Input, recipe_.path.string(),
+                        "[[target]] \"" + target.name + "\" is no object of the scene");
+    }
+    objects.push_back(static_cast<std::uint32_t>(found - scene.objects.begin()));
+  }
+  return objects;
+}
+
+void DataSet::write_models(const scenes::Scene& scene) const {
+  Json sizes = Json::object();
+  const std::vector<std::uint32_t> objects = targets_in(scene);
+  for (std::size_t t = 0; t < objects.size(); ++t) {
+    base::write_text(folder_.path() / "models" / fmt::format("obj_{:06}.ply", t + 1),
+                     model_ply(scene, objects[t]));
+    sizes[std::to_string(t + 1)] = model_info(scene, objects[t]);
+  }
+  base::write_text(folder_.path() / "models" / "models_info.json", dump_lines(sizes));
+}
+
+bool is_free(const scenes::Scene& scene, const scenes::RayQuery& query,
+             const scenes::Camera& camera, double clearance_m) {
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    if (raytrace::winding_number(scene, o, camera.position) > inside) return false;
+  }
+  for (int k = 0; k < directions && clearance_m > 0.0; ++k) {
+    const double z = 1.0 - (2.0 * k + 1.0) / directions, r = std::sqrt(1.0 - z * z);
+    const double phi = 2.0 * base::pi * k * 0.6180339887498949;
+    const scenes::Hit hit =
+        query.closest(camera.position, {r * std::cos(phi), r * std::sin(phi), z});
+    if (!hit.missed() && hit.t < clearance_m) return false;
+  }
+  try {
+    raytrace::check_camera(scene, query, camera);
+  } catch (const base::Error&) {
+    return false;
+  }
+  return true;
+}
+
+void DataSet::place_camera(scenes::Scene& scene, const scenes::RayQuery& query,
+                           std::size_t image) const {
+  scenes::Camera& camera = scene.cameras[camera_];
+  const CameraPose given{camera.position, camera.look_at, camera.up};
+  std::optional<Vec3> target;
+  const std::vector<std::uint32_t> objects = targets_in(scene);
+  for (std::size_t t = 0; t < objects.size(); ++t) {
+    if (recipe_.targets[t].name != recipe_.camera.look_at_target) continue;
+    const scenes::Object& object = scene.objects[objects[t]];
+    scenes::Box box;
+    for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
+      for (const std::uint32_t v : scene.triangles[object.first_triangle + k].vertex) {
+        box.add(scene.vertices[v]);
+      }
+    }
+    target = box.middle();
+  }
+  for (std::size_t attempt = 0; attempt < most_attempts; ++attempt) {
+    const CameraPose pose = draw_camera(recipe_, image, attempt, given, target);
+    camera.position = pose.position;
+    camera.look_at = pose.look_at;
+    camera.up = pose.up;
+    if (is_free(scene, query, camera, recipe_.camera.clearance_m)) return;
+  }
+  throw base::Error(base::Blame::Input, recipe_.path.string(),
+                    fmt::format("image {}: {} places of the camera were inside bodies or nearer to "
+                                "a surface than the clearance",
+                                image, most_attempts),
+                    {}, "Widen the bounds of [camera], or reduce its clearance");
+}
+
+void DataSet::write_picture(const Studio& studio, const scenes::Camera& camera, const Drawn& drawn,
+                            const Draw& draw, std::size_t image) const {
+  const fs::path rgb = folder_.bop("rgb", image);
+  const base::Image& picture = drawn.frame.image;
+  if (recipe_.cctv) {
+    CctvSetup setup = cctv_of_camera(studio.loaded.scene, camera, studio.common);
+    write_cctv(rgb.string(), setup, run_chain(setup, picture));
+    return;
+  }
+  const base::ToneMapped tone =
+      draw.white_cd_m2 ? base::expose(picture, *draw.white_cd_m2, base::ToneCurve::Shoulder)
+                       : base::tone_map(picture);
+  base::write_png(rgb, picture.width, picture.height, 3, tone.rgb);
+}
+
+void DataSet::make(std::size_t image) {
+  const Draw draw = draw_values(recipe_, image);
+  Common common = common_;
+  common.seed = draw.seed;
+  LoadedScene loaded = check_scene(scenes::read_scene(recipe_.scene, draw.overrides));
+  const scenes::RayQuery query(loaded.scene);
+  place_camera(loaded.scene, query, image);
+  const scenes::Camera& camera = loaded.scene.cameras[camera_];
+  RenderCall call;
+  call.scene = {recipe_.scene.string(), draw.overrides};
+  call.cameras = {camera.name};
+  call.aovs = {"object", "depth", "normal"};
+  decide_effects(loaded, wanted_effects(call, {&camera}));
+  check_input(loaded, query, {{&camera}}, true, true);
+  check_memory(loaded, query, solve_options(loaded.scene, common_), nullptr, true);
+  StageTimes times;
+  // The solution is sampled with the data set's seed: images that differ in the camera share it.
+  const Solved& light = lights_.take({call, common_, loaded, query, {}, Interrupt::asked}, times);
+  Interrupt::leave_if_asked();
+  const Studio studio{call, common, loaded, query, light};
+  const Drawn drawn = draw_picture(studio, camera, times);
+  Interrupt::leave_if_asked();
+
+  const base::Image& picture = drawn.frame.image;
+  const studies::ObjectMap map = studies::object_map(picture);
+  const std::vector<studies::TargetView> all = studies::find_targets(loaded.scene, camera, map);
+  std::vector<studies::TargetView> views;
+  for (const std::uint32_t object : targets_in(loaded.scene)) {
+    views.push_back(*std::ranges::find(all, object, &studies::TargetView::object));
+  }
+  std::vector<Masks> masks;
+  for (std::size_t t = 0; t < views.size(); ++t) {
+    masks.push_back(masks_of(views[t], map));
+    base::write_png(folder_.mask("mask", image, t), map.columns, map.rows, 1, masks[t].whole);
+    base::write_png(folder_.mask("mask_visib", image, t), map.columns, map.rows, 1,
+                    masks[t].visible);
+  }
+  const std::vector<float>& depth_m = picture.find("Z")->values;
+  const Depth16 depth = depth16(depth_m);
+  base::write_png16(folder_.bop("depth", image), map.columns, map.rows, depth.values);
+  write_picture(studio, camera, drawn, draw, image);
+  base::write_exr(folder_.layers(image), picture, picture_header(studio, camera, drawn));
+
+  const raytrace::CameraModel model = raytrace::make_camera_model(camera, map.columns, map.rows);
+  Json record = {{"key", key_}, {"image", image}};
+  const auto three = [](const Vec3& v) { return Json{v.x, v.y, v.z}; };
+  record["drawn"] = {{"set", draw.overrides},
+                     {"camera",
+                      {{"name", camera.name},
+                       {"position_m", three(camera.position)},
+                       {"look_at_m", three(camera.look_at)},
+                       {"up", three(camera.up)}}},
+                     {"seed", draw.seed}};
+  if (draw.white_cd_m2) record["drawn"]["white_cd_m2"] = *draw.white_cd_m2;
+  record["columns"] = map.columns;
+  record["rows"] = map.rows;
+  record["error"] = error_json(drawn, loaded.scene.quality.error)["estimate"];
+  record.update(
+      labels_of({recipe_, draw, loaded.scene, query, model, map, depth_m, depth.scale_mm, image},
+                views, masks));
+  base::write_text(folder_.labels(image), dump_lines(record));
+}
+
+bool DataSet::finish() const {
+  Json cameras = Json::object(), poses = Json::object(), facts = Json::object();
+  Json coco = {
+      {"images", Json::array()}, {"annotations", Json::array()}, {"categories", Json::array()}};
+  for (std::size_t image = 0; image < recipe_.images; ++image) {
+    const Json known = labels(image);
+    if (known.is_null()) return false;
+    const std::string number = std::to_string(image);
+    cameras[number] = known["scene_camera"];
+    poses[number] = known["scene_gt"];
+    facts[number] = known["scene_gt_info"];
+    coco["images"].push_back({{"id", image},
+                              {"file_name", fmt::format("train/000000/rgb/{:06}.png", image)},
+                              {"width", known["columns"]},
+                              {"height", known["rows"]}});
+    for (const Json& annotation : known["annotations"]) coco["annotations"].push_back(annotation);
+  }
+  for (std::size_t t = 0; t < recipe_.targets.size(); ++t) {
+    const DrawnTarget& target = recipe_.targets[t];
+    Json category = {{"id", t + 1}, {"name", target.name}};
+    if (!target.points.empty()) {
+      category["keypoints"] = Json::array();
+      for (const KeyPoint& point : target.points) category["keypoints"].push_back(point.name);
+      category["skeleton"] = Json::array();
+    }
+    coco["categories"].push_back(category);
+  }
+  const fs::path bop = folder_.path() / "train/000000";
+  base::write_text(bop / "scene_camera.json", dump_lines(cameras));
+  base::write_text(bop / "scene_gt.json", dump_lines(poses));
+  base::write_text(bop / "scene_gt_info.json", dump_lines(facts));
+  base::write_text(folder_.path() / "annotations.json", dump_lines(coco));
+  return true;
+}
+
+void run(const DatasetCall& call, const Common& common) {
+  DataSet set(call, common);
+  const Numbers numbers = numbers_of(call, set.recipe().images);
+  const Interrupt interrupt;
+  {
+    Progress progress("images", common.quiet);
+    const std::size_t total = numbers.last - numbers.first + 1;
+    for (std::size_t k = 0; k < total; ++k) {
+      progress(k, total);
+      if (!set.is_done(numbers.first + k)) set.make(numbers.first + k);
+    }
+  }
+  const bool whole = set.finish();
+  if (common.quiet) return;
+  note(whole ? fmt::format("{}: {} images with labels", call.folder, set.recipe().images)
+             : fmt::format("{}: images {} to {} are done; the lists of all images are written once "
+                           "the others are",
+                           call.folder, numbers.first, numbers.last));
+}
+
+}  // namespace
+
+Command add_dataset(CLI::App& program) {
+  CLI::App* parser = program.add_subcommand(
+      "dataset",
+      "Pictures with depth, masks and poses for training, with drawn cameras and lights");
+  const auto call = std::make_shared<DatasetCall>();
+  parser->add_option("DATASET", call->recipe, "What is drawn, and between what bounds (TOML)")
+      ->required()
+      ->type_name("");
+  parser->add_option("-o,--output", call->folder, "Folder for pictures and labels")
+      ->required()
+      ->type_name("DIR");
+  parser
+      ->add_option("--images", call->images,
+                   "These images only; finished ones are not drawn again. All of them, in any "
+                   "parts, make the same files")
+      ->type_name("FIRST-LAST");
+  return {parser, [call](const Common& common) { run(*call, common); }};
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: Apache-2.0
+"""dataset: the labels, read as the documentation of BOP and COCO describes them, agree with the pictures; any part, in
+any order, makes the same files."""
+import json
+import math
+import struct
+import unittest
+
+import exr
+import png
+import program
+
+SCENE = """format = 1
+unit = "cm"
+[[material]]
+name = "grey"
+diffuse = 0.5
+[[object]]
+name = "cube"
+shape = "box"
+min = [-20, -30, -10]
+max = [20, 30, 10]
+material = "grey"
+[[object]]
+name = "post"
+shape = "box"
+min = [60, -10, -100]
+max = [70, 10, 100]
+material = "grey"
+[sun]
+direction = [1, 0.3, 0.5]
+illuminance = 1000
+[[light]]
+name = "lamp"
+type = "point"
+position = [200, 200, 200]
+intensity = 100
+[[camera]]
+name = "A"
+position = [400, 0, 0]
+look_at = [0, 0, 0]
+fx = 90
+fy = 100
+cx = 45
+cy = 28
+resolution = [80, 60]
+"""
+CORNERS = [(x, y, z) for x in (-200, 200) for y in (-300, 300) for z in (-100, 100)]  # mm
+
+DATASET = """format = 1
+scene = "a.toml"
+images = 4
+seed = 7
+error = 0.3
+[camera]
+from = "shell"
+center = [0, 0, 0]
+radius = [1.4, 2.5]
+azimuth_deg = [-60, 60]
+elevation_deg = [-30, 30]
+look_at_target = "cube"
+jitter = 0.2
+roll_deg = [-20, 20]
+clearance = 0.1
+[[target]]
+name = "cube"
+low = [-0.2, -0.2, -0.2]
+high = [0.2, 0.2, 0.2]
+turns = true
+[[target.point]]
+name = "corner"
+position = [0.2, 0.3, 0.1]
+[[target.point]]
+name = "middle"
+position = [0, 0, 0]
+[[vary]]
+key = "sun.direction"
+direction = true
+[[vary]]
+key = "light.lamp.intensity"
+log_uniform = [10, 1000]
+[[vary]]
+key = "material.grey.diffuse"
+uniform = [[0.1, 0.1, 0.1], [0.8, 0.8, 0.8]]
+"""
+
+
+def hull(points):
+    """Counter-clockwise convex hull (Andrew's monotone chain)."""
+    points = sorted(points)
+
+    def half(points):
+        chain = []
+        for p in points:
+            while len(chain) > 1 and cross(chain[-2], chain[-1], p) <= 0:
+                chain.pop()
+            chain.append(p)
+        return chain[:-1]
+
+    return half(points) + half(points[::-1])
+
+
+def cross(a, b, p):
+    return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
+
+
+def depth_inside(polygon, p):
+    """Distance to the nearest side, negative outside."""
+    return min(cross(a, b, p) / math.dist(a, b) for a, b in zip(polygon, polygon[1:] + polygon[:1]))
+
+
+def decoded(segmentation):
+    """COCO's uncompressed RLE: runs of 0 and 1 by turns, down the columns."""
+    height, width = segmentation["size"]
+    mask, at, value = [0] * (width * height), 0, 0
+    for run in segmentation["counts"]:
+        for k in range(at, at + run):
+            mask[k % height * width + k // height] = value
+        at, value = at + run, 1 - value
+    assert at == width * height
+    return mask
+
+
+class Dataset(program.Case):
+    def setUp(self):
+        super().setUp()
+        self.write("a.toml", SCENE)
+        self.write("set.toml", DATASET)
+
+    def files(self, folder):
+        top = self.folder / folder
+        return {str(path.relative_to(top)): path.read_bytes() for path in sorted(top.rglob("*")) if path.is_file()}
+
+    def bop(self, name):
+        return json.loads((self.folder / "out/train/000000" / name).read_text())
+
+    def test_labels_agree_with_the_pictures(self):
+        self.done("dataset", "set.toml", "-o", "out", "-q")
+        cameras, poses, facts = (self.bop(f"scene_{name}.json") for name in ("camera", "gt", "gt_info"))
+        coco = json.loads((self.folder / "out/annotations.json").read_text())
+        self.assertEqual(set(cameras), {"0", "1", "2", "3"})
+        boxes_seen = 0
+        for image in range(4):
+            camera, pose, fact = cameras[str(image)], poses[str(image)][0], facts[str(image)][0]
+            k, r, t = camera["cam_K"], pose["cam_R_m2c"], pose["cam_t_m2c"]
+            self.assertEqual(k, [90, 0, 44.5, 0, 100, 27.5, 0, 0, 1])
+
+            def project(point):
+                x, y, z = (sum(r[3 * row + c] * point[c] for c in range(3)) + t[row] for row in range(3))
+                return k[0] * x / z + k[2], k[4] * y / z + k[5], z
+
+            # The mask is what the pixels' centres, which have whole numbers, see of the cube.
+            outline = hull([project(corner)[:2] for corner in CORNERS])
+            width, height, _, whole = png.pixels((self.folder / f"out/train/000000/mask/{image:06}_000000.png").read_bytes())
+            visible = png.pixels((self.folder / f"out/train/000000/mask_visib/{image:06}_000000.png").read_bytes())[3]
+            for pixel, value in enumerate(whole):
+                inside = depth_inside(outline, (pixel % width, pixel // width))
+                if abs(inside) > 0.01:
+                    self.assertEqual(value, 255 if inside > 0 else 0, (image, pixel, inside))
+                self.assertLessEqual(visible[pixel], value)
+            self.assertEqual(fact["px_count_all"], sum(whole) // 255)
+            self.assertEqual(fact["px_count_visib"], sum(visible) // 255)
+            self.assertAlmostEqual(fact["visib_fract"], sum(visible) / sum(whole))
+            # Depth in 16 bits against the layer of the EXR file.
+            data = png.pixels((self.folder / f"out/train/000000/depth/{image:06}.png").read_bytes())[3]
+            depth = exr.read(self.folder / f"out/images/{image:06}.exr")[3]["Z"]
+            for stored, metres in zip(struct.unpack(f">{width * height}H", data), depth):
+                expected = 1000 * metres if math.isfinite(metres) else 0
+                self.assertLessEqual(abs(stored * camera["depth_scale"] - expected), 0.51 * camera["depth_scale"])
+            for note in (one for one in coco["annotations"] if one["image_id"] == image):
+                self.assertEqual([255 * bit for bit in decoded(note["segmentation"])], list(visible))
+                columns = [p % width for p, value in enumerate(visible) if value]
+                rows = [p // width for p, value in enumerate(visible) if value]
+                self.assertEqual(note["bbox"], [min(columns), min(rows), max(columns) - min(columns) + 1, max(rows) - min(rows) + 1])
+                self.assertEqual(note["area"], sum(visible) // 255)
+                x, y, seen = note["keypoints"][:3]
+                u, v, _ = project((200, 300, 100))
+                if seen:
+                    self.assertLess(math.dist((x, y), (u, v)), 1e-6)
+                self.assertIn(note["keypoints"][5], (0, 1), "the middle of the cube is hidden")
+                boxes_seen += 1
+        self.assertGreater(boxes_seen, 2)
+        drawn = [json.loads((self.folder / f"out/images/{k:06}.json").read_text())["drawn"] for k in range(4)]
+        self.assertEqual(len({str(one["set"]) for one in drawn}), 4)
+        model = (self.folder / "out/models/obj_000001.ply").read_text().splitlines()
+        corners = {tuple(map(float, line.split())) for line in model[model.index("end_header") + 1:][:int(model[3].split()[2])]}
+        self.assertEqual(corners, set(CORNERS))
+        size = json.loads((self.folder / "out/models/models_info.json").read_text())["1"]
+        self.assertAlmostEqual(size["diameter"], math.dist(CORNERS[0], CORNERS[-1]), places=6)
+
+    def test_parts_in_any_order_make_the_same_files(self):
+        self.done("dataset", "set.toml", "-o", "out", "-q", "--threads", "1")
+        self.done("dataset", "set.toml", "-o", "parts", "-q", "--images", "2-3")
+        self.assertFalse((self.folder / "parts/annotations.json").exists())
+        before = (self.folder / "parts/images/000003.json").stat().st_mtime_ns
+        self.done("dataset", "set.toml", "-o", "parts", "-q")
+        self.assertEqual(before, (self.folder / "parts/images/000003.json").stat().st_mtime_ns)  # not drawn again
+        self.assertEqual(self.files("out"), self.files("parts"))
+
+    def test_the_camera_is_never_in_a_body(self):
+        text = DATASET.replace("radius = [1.4, 2.5]", "radius = [0.05, 0.15]").replace("[-30, 30]", "[0, 90]").replace("clearance = 0.1\n", "")
+        self.write("set.toml", text.replace("turns = true", "").replace("low = [-0.2, -0.2, -0.2]", "low = [0, 0, 0]").replace(
+            "high = [0.2, 0.2, 0.2]", "high = [0, 0, 0]").replace('look_at_target = "cube"', "look_at = [3, 0, 0]"))
+        self.done("dataset", "set.toml", "-o", "out", "-q", "--images", "0")
+        x, y, z = json.loads((self.folder / "out/images/000000.json").read_text())["drawn"]["camera"]["position_m"]
+        self.assertFalse(abs(x) < 0.2 and abs(y) < 0.3 and abs(z) < 0.1)
+        self.assertLess(math.hypot(x, y, z), 0.15 + 1e-12)
+
+    def test_refusals(self):
+        for old, new, words in (("images = 4", "images = 0", "images"), ("turns = true", "turn = true", "turns"),
+                                ('name = "cube"', 'name = "cub"', "look_at_target"), ("direction = true", "", "law"),
+                                ("[1.4, 2.5]", "[2.5, 1.4]", "radius"), ("log_uniform = [10", "log_uniform = [-10", "above 0")):
+            self.write("set.toml", DATASET.replace(old, new, 1))
+            self.says(self.refused("dataset", "set.toml", "-o", "out"), "set.toml", words)
+        self.write("set.toml", DATASET)
+        self.says(self.refused("dataset", "set.toml", "-o", "out", "--images", "3-9"), "--images", "0 to 3")
+
+
+if __name__ == "__main__":
+    unittest.main()
