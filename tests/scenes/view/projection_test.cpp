@@ -57,7 +57,7 @@ TEST(Projection, FisheyeIsOpenCvs) {
 TEST(Projection, InvertsAndMeasures) {
   for (const Camera& camera :
        {calibrated(Distortion::None, {}),
-        calibrated(Distortion::BrownConrady, {-0.3, 0.1, 0.001, -0.002, -0.05}),
+        calibrated(Distortion::BrownConrady, {-0.3, 0.1, 0.001, -0.002, 0.02}),
         calibrated(Distortion::BrownConrady, {0.4, 0.2, -0.003, 0.002, 0.0}),
         calibrated(Distortion::Fisheye, {0.05, -0.01, 0.002, -0.0005})}) {
     const Projection lens(camera, 640, 480);
