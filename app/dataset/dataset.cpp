@@ -11,13 +11,13 @@
 #include <optional>
 
 #include "app/build_id.h"
+#include "app/call/memory.h"
 #include "app/call/render_call.h"
 #include "app/cctv/cctv.h"
 #include "app/console.h"
 #include "app/dataset/labels.h"
 #include "app/dataset/recipe.h"
 #include "app/json.h"
-#include "app/memory.h"
 #include "app/options.h"
 #include "app/output.h"
 #include "app/render/draw.h"
@@ -101,6 +101,7 @@ class DataSet {
   DataSet(const DatasetCall& call, const Common& common)
       : recipe_(read_recipe(call.recipe)), common_(common), folder_(call.folder) {
     common_.quiet = true;
+    common_.progress = std::make_shared<Progress>(true);
     common_.seed = recipe_.seed;
     scenes::Scene scene = scenes::read_scene(recipe_.scene, model_overrides());
     Files inputs = scene.files;
@@ -347,14 +348,13 @@ void run(const DatasetCall& call, const Common& common) {
   DataSet set(call, common);
   const Numbers numbers = numbers_of(call, set.recipe().images);
   const Interrupt interrupt;
-  {
-    Progress progress("images", common.quiet);
-    const std::size_t total = numbers.last - numbers.first + 1;
-    for (std::size_t k = 0; k < total; ++k) {
-      progress(k, total);
-      if (!set.is_done(numbers.first + k)) set.make(numbers.first + k);
-    }
+  const std::size_t total = numbers.last - numbers.first + 1;
+  const auto report = common.progress->begin("images", Work::Other, double(total));
+  for (std::size_t k = 0; k < total; ++k) {
+    report(k, total);
+    if (!set.is_done(numbers.first + k)) set.make(numbers.first + k);
   }
+  common.progress->end();
   const bool whole = set.finish();
   if (common.quiet) return;
   note(whole ? fmt::format("{}: {} images with labels", call.folder, set.recipe().images)
