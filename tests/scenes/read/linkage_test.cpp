@@ -233,7 +233,7 @@ TEST_F(MovingScene, BadLinkagesAreRefused) {
       {joint_of("a", "parent = \"b\"\n") + joint_of("b", "parent = \"a\"\n"), {"a on b on a"}},
       {joint_of("j", "parent = \"k\"\n"), {"\"parent\"", "\"k\"", "allowed are"}},
       {quad_on("arm"), {"\"joint\"", "\"arm\"", "no [[joint]]"}},
-      {joint_of("j", "") + quad_on("jj"), {"\"jj\"", "Did you mean \"j\""}},
+      {joint_of("j", "") + quad_on("jj"), {"\"jj\"", "allowed are joints and tracks: j"}},
       {joint_of("j", "angle_deg = \"short.csv\"\n") + quad_on("j"),
        {"short.csv:3", "ends at 2026-03-01T12:01:00Z", "2026-03-01T12:02:00Z is asked for",
         "allowed are moments from 2026-03-01T12:00:00Z"}},

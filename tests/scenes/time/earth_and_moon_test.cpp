@@ -61,16 +61,16 @@ TEST(EllipsoidEclipse, OfAPolarOrbitIsWhereTheClosedFormHasIt) {
               0.05);
 }
 
-// Full Moon: 10^(-0.4 (26.74 - 12.73)) = 2.4938e-6 of the Sun's illuminance. At 90 deg the law has
-// 0.026 90 + 4e-9 90^4 = 2.6024 magnitudes less. Twice as far is a quarter.
+// Full Moon: 10^(-0.4 (26.74 - 12.73)) = 2.4889e-6 of the Sun's illuminance. At 90 deg the law has
+// 0.026 90 + 4e-9 90^4 = 2.60244 magnitudes less. Twice as far is a quarter.
 TEST(Moonlight, FollowsAllensPhaseLawAndTheInverseSquare) {
   const auto lx = [](double phase, double far) {
     return moon_illuminance_lx(Rgb(133100.0), phase, far * mean_moon_distance_m,
                                astronomical_unit_m)
         .r;
   };
-  EXPECT_NEAR(lx(0.0, 1.0), 133100.0 * 2.4938e-6, 1e-4);
-  EXPECT_NEAR(lx(90.0, 1.0) / lx(0.0, 1.0), std::pow(10.0, -0.4 * 2.6024), 1e-9);
+  EXPECT_NEAR(lx(0.0, 1.0), 133100.0 * 2.4889e-6, 1e-5);
+  EXPECT_NEAR(lx(90.0, 1.0) / lx(0.0, 1.0), std::pow(10.0, -0.4 * 2.60244), 1e-9);
   EXPECT_NEAR(lx(0.0, 2.0) / lx(0.0, 1.0), 0.25, 1e-12);
 }
 
