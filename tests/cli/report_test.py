@@ -379,7 +379,7 @@ class Refusals(Report):
         self.refused_study(doubled, "once more")
 
     def test_usage(self):
-        self.says(self.refused("report"), "folder")
+        self.says(self.refused("report"), "DIR is required")
         self.says(self.done("report", "--help"), "study.json", "--plain")
 
 

