@@ -117,7 +117,7 @@ void add_tone_options(CLI::App& command, ToneChoice& tone, const std::string& mo
 
 void note_unused_curve(const ToneChoice& tone, bool quiet) {
   if (quiet || tone.shared() || tone.curve == base::ToneCurve::Shoulder) return;
-  note("note: --curve has no effect: --exposure own shows each picture by a curve of its own");
+  note("note: --curve has no effect: --exposure own shows each picture by its own curve");
 }
 
 void add_size_option(CLI::App& command, std::optional<Size>& size) {

@@ -128,7 +128,7 @@ void AccuracyParts::see_that_work_is_wanted() const {
   if (task_.view.stop()) end_early();
   if (task_.call.part.task != PartCall::Task::Merge) return;
   throw base::Error(base::Blame::Work, task_.call.folder, "has lost work since it was looked at",
-                    {}, "Merge again: what is missing is listed");
+                    {}, "Merge again; it lists the missing parts");
 }
 
 CachedResult AccuracyParts::batch(const studies::Batch& batch) {
@@ -272,7 +272,7 @@ std::string AccuracyStages::trace_first(std::vector<PathReference>& references) 
   take_truth(references.front());
   if (result_.pixels == 0) return "no pixel shows a surface that reflects, edges of sources apart";
   if (studies::mean_luminance(full_, counted_) > 0.0) return "";
-  return fmt::format("no light was found on what the camera sees, with {} paths a pixel",
+  return fmt::format("no light was found on visible surfaces, with {} paths a pixel",
                      2 * result_.reference_paths);
 }
 

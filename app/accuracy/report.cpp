@@ -236,8 +236,8 @@ std::string accuracy_text(const AccuracyTask& task, const AccuracyResult& result
                         point.cost.memory_bytes / mib, first ? "*" : "");
   }
   text += fmt::format(
-      "\nReference: two pictures of {} paths a pixel, their noise taken off; errors from {} on "
-      "are told from none.\n",
+      "\nReference: two pictures of {} paths a pixel, their noise subtracted; errors below {} "
+      "are not resolved.\n",
       result.reference_paths, percent(result.resolution));
   for (const MethodLimit& limit : result.limits) {
     text +=

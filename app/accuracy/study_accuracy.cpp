@@ -143,7 +143,7 @@ std::vector<int> read_counts(const std::string& option, const std::string& text,
 
 Command add_study_accuracy(CLI::App& study) {
   CLI::App* parser = study.add_subcommand(
-      "accuracy", "What a smaller error costs, by radiosity, distributed lights and paths");
+      "accuracy", "Cost of a smaller error, by radiosity, distributed lights and paths");
   const auto call = std::make_shared<AccuracyCall>();
   add_study_options(*parser, *call);
   add_part_options(*parser, call->part);

@@ -53,7 +53,8 @@ void check_call(const DegradeCall& call) {
     refuse("--twin", "\"" + call.twin + "\" is not an .exr file", "Name a file that ends in .exr");
   }
   if (!call.twin.empty() && call.tape.fields) {
-    refuse("--twin", "stands beside --fields", "A twin belongs to a scene that stands still");
+    refuse("--twin", "cannot be combined with --fields",
+           "A twin belongs to a scene that stands still");
   }
   if (call.twin.empty() && call.target_resels != default_target_resels) {
     refuse("--target-resels", "has no effect without --twin", "Add --twin FILE.exr");
@@ -62,10 +63,10 @@ void check_call(const DegradeCall& call) {
     refuse("--target-resels", "is even", "Give an odd number, so that a target has a middle");
   }
   if (!call.scene.empty() && !call.preset.empty()) {
-    refuse("--preset", "stands beside --scene", "Give one of them");
+    refuse("--preset", "cannot be combined with --scene", "Give one of them");
   }
   if (!call.cctv.empty() && !(call.scene.empty() && call.preset.empty())) {
-    refuse("--cctv", "stands beside --scene or --preset", "Give one of them");
+    refuse("--cctv", "cannot be combined with --scene or --preset", "Give one of them");
   }
   if (call.part.task == PartCall::Task::Solve) {
     refuse("--part", "a sequence has no solution", "Write --part K/N");
@@ -233,7 +234,7 @@ void run(const DegradeCall& call, const Common& common) {
 
 std::vector<Command> add_degrade(CLI::App& program) {
   CLI::App* parser =
-      program.add_subcommand("degrade", "What a CCTV camera and its monitor make of a linear EXR");
+      program.add_subcommand("degrade", "Shows a linear EXR as a CCTV camera and its monitor do");
   const auto call = std::make_shared<DegradeCall>();
   parser
       ->add_option("IN", call->tape.inputs,
@@ -241,7 +242,7 @@ std::vector<Command> add_degrade(CLI::App& program) {
       ->type_name("");
   parser
       ->add_option("-o,--output", call->output,
-                   "Picture to write: PNG, or EXR in cd/m2; # stands for the frame's number")
+                   "Picture to write: PNG, or EXR in cd/m2; # is the frame's number")
       ->type_name("FILE");
   parser->add_option("--scene", call->scene, "Scene whose camera and [monitor] to use")
       ->type_name("SCENE");

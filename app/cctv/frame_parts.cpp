@@ -100,7 +100,7 @@ Json FrameParts::reports() const {
 std::vector<TapeFrame> lay_out(const TapeCall& call) {
   using base::Blame;
   if (call.frames > 0 && call.inputs.size() > 1) {
-    throw base::Error(Blame::Input, "--frames", "stands beside several pictures",
+    throw base::Error(Blame::Input, "--frames", "accepts a single input picture",
                       "it says how long one picture is shown",
                       "Leave it out: each picture is a frame");
   }
@@ -132,7 +132,7 @@ void check_numbered(const std::string& option, const std::string& path, std::siz
   const auto [begin, width] = run_of_hashes(path);
   if (frames > 1 && path.find('#', begin + width) != std::string::npos) {
     throw base::Error(base::Blame::Input, option, fmt::format("\"{}\" has # in two places", path),
-                      "one run of # stands for the frame's number, as wide as the run",
+                      "one run of # is the frame's number, as wide as the run",
                       "Name it for example frame-####.png");
   }
   if (path.empty() || frames < 2 || width > 0) return;

@@ -281,7 +281,7 @@ Command add_study_compare(CLI::App& study) {
                   read_whole_number("--lights", word, studies::fewest_lights, most_lights)));
             }
           },
-          fmt::format("How many lights stand for a wide source (default {})",
+          fmt::format("Number of lights per wide source (default {})",
                       fmt::join(call->lights, ",")))
       ->type_name("LIST");
   parser

@@ -138,7 +138,8 @@ DrawnCamera read_camera_draw(const TomlNode& node) {
   camera.roll_deg = one_range(table, "roll_deg", camera.roll_deg);
   camera.clearance_m = table.length("clearance", 1.0, scenes::at_least_zero).value_or(0.0);
   if (camera.look_at && !camera.look_at_target.empty()) {
-    table.fail("look_at", "stands beside \"look_at_target\"", "a camera looks at one of them");
+    table.fail("look_at", "cannot be combined with \"look_at_target\"",
+               "a camera looks at one of them");
   }
   return camera;
 }
@@ -281,7 +282,8 @@ Recipe read_recipe(const std::filesystem::path& path) {
   if (table.has("white")) {
     recipe.white_cd_m2 = one_range(table, "white", {}, scenes::above_zero);
     if (recipe.cctv) {
-      table.fail("white", "stands beside cctv = true", "a CCTV camera has an exposure of its own");
+      table.fail("white", "cannot be combined with cctv = true",
+                 "a CCTV camera has an exposure of its own");
     }
   }
   recipe.unit_m = unit_of(recipe.scene);

@@ -106,7 +106,7 @@ void refuse_to_merge(const fs::path& folder, const std::vector<MissingWork>& mis
                      std::max<std::size_t>(1, record.parts)));
   }
   throw base::Error(base::Blame::Work, folder.string(), "is not complete", {},
-                    fmt::format("Run what is missing in {}, then merge again",
+                    fmt::format("Run the missing parts in {}, then merge again",
                                 shell_word(record.folder.string())));
 }
 

@@ -31,7 +31,7 @@ void agree_on_digest(const fs::path& file, const std::string& digest) {
   throw base::Error(
       base::Blame::Input, file.string(),
       fmt::format("is another solution than the other parts have read (digest {})", digest),
-      fmt::format("{} has the digest of theirs", told.string()),
+      fmt::format("{} has their digest", told.string()),
       "Bring theirs back; or remove all of the folder and begin anew");
 }
 

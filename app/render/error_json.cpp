@@ -61,7 +61,7 @@ Json json_of(const raytrace::ErrorEstimate& total, bool known, const Parts& part
 // why_unknown: the reason, if unknown.
 std::string text_of(const raytrace::ErrorEstimate& total, bool known, const char* why_unknown,
                     const Parts& parts, const std::vector<std::string>& not_captured) {
-  std::string text = fmt::format("no error can be told: {}", why_unknown);
+  std::string text = fmt::format("the error is unknown: {}", why_unknown);
   if (known) {
     text = fmt::format("error {}, 95 % sure below {}:", scenes::percent(total.estimate),
                        scenes::percent(total.bound_95));
@@ -95,7 +95,7 @@ const char* words_of(raytrace::Limit limit) {
       return "the ledger lacks light that no ray finds again, as on a spot beside a lamp that "
              "mirrors alone show; move such a lamp off the surface";
     case raytrace::Limit::Given:
-      return "the solution of --solution is taken as it is; leave it out to solve anew";
+      return "--solution is used unchanged; leave it out to solve again";
   }
   return "";
 }

@@ -274,7 +274,7 @@ void end_interrupted(const PictureFiles& last) {
   const std::string say = files.size() == 1 ? "says it is" : "say they are";
   throw base::Error(base::Blame::Work, "render", "interrupted", {},
                     files.empty() ? ""
-                                  : fmt::format("What was finished is in {}, which {} partial",
+                                  : fmt::format("The finished part is in {}, which {} partial",
                                                 fmt::join(files, ", "), say));
 }
 

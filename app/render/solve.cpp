@@ -244,7 +244,7 @@ void run(const SolveCall& call, const Common& common) {
   const bool steers = error && call.solution.empty();
   if (call.time_limit_s > 0.0 && !steers && !common.quiet) {
     note(std::string("note: --time-limit has no effect: ") +
-         (call.solution.empty() ? "no error is asked for" : "--solution is read as it is"));
+         (call.solution.empty() ? "no error is asked for" : "--solution is used unchanged"));
   }
   const Solved light =
       solve_alone({loaded, common, query, call.time_limit_s}, call.solution, times);
@@ -277,7 +277,7 @@ void run(const SolveCall& call, const Common& common) {
   if (light.limit == raytrace::Limit::Stopped) {
     const std::string& file = call.output.empty() ? call.mesh : call.output;
     throw base::Error(base::Blame::Work, "solve", "interrupted", {},
-                      file.empty() ? "" : "What it had come to is in " + file);
+                      file.empty() ? "" : "The partial result is in " + file);
   }
   if (light.surface.known) check_reached(call.scene, light.limit, error.value_or(0.0));
 }

@@ -225,7 +225,8 @@ Json report_of(const LoadedScene& loaded) {
 }  // namespace
 
 Command add_inspect(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand("inspect", "Show what was read from a scene file");
+  CLI::App* parser =
+      program.add_subcommand("inspect", "Lists the contents of a scene file, with warnings");
   const auto call = std::make_shared<InspectCall>();
   add_scene(*parser, call->scene);
   parser->add_flag("--json", call->json, "JSON on standard output");
@@ -238,7 +239,7 @@ Command add_inspect(CLI::App& program) {
             } catch (const base::Error& error) {
               if (error.blame() != base::Blame::Work) throw;
               loaded.scene.warnings.emplace_back(
-                  "what needs rays is not checked: they do not fit into memory");
+                  "checks that need rays are left out: they do not fit into memory");
             }
             const Json report = report_of(loaded);
             print(call->json ? dump(report) : inspect_text(report));

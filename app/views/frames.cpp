@@ -256,7 +256,7 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
   if (how_.task == PartCall::Task::Merge) {
     throw base::Error(base::Blame::Work, folder_.string(),
                       "has lost work since it was looked at" + (said.empty() ? "" : ": " + said),
-                      {}, "Merge again: what is missing is listed");
+                      {}, "Merge again; it lists the missing parts");
   }
   if (!said.empty()) note("note: " + said);
   const LoadedScene& basis = part_.basis_scene;

@@ -186,7 +186,7 @@ void note_unused(const StudyTask& task) {
     return setting.starts_with("orbit.position_deg=");
   });
   if (placed && !study.positions_deg.empty()) {
-    note("note: orbit.position_deg has no effect: the study goes to positions of its own");
+    note("note: orbit.position_deg has no effect: the study sets the positions");
   }
 }
 
@@ -268,7 +268,7 @@ std::optional<StudyResults> run_study(StudyTask task, const Common& common) {
   study.skipped = std::move(skipped);
   if (!study.complete && has_finished_results(task.folder)) {
     throw base::Error(base::Blame::Work, "study", "interrupted", {},
-                      "The results of the run before stand in " + task.folder +
+                      "The results of the previous run are in " + task.folder +
                           "; run the same command again to go on");
   }
   const Json json = to_json(study);

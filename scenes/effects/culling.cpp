@@ -205,7 +205,7 @@ std::vector<Culling> cull_effects(const Scene& scene, const Asked& asked, double
   if (lamp_culled) effects = find_effects(scene, groups, asked);
   if (sun_culled) {
     if (effects.penumbra) {
-      culled.push_back({"penumbra", "cannot matter: no sunlight reaches what a camera sees"});
+      culled.push_back({"penumbra", "cannot matter: no sunlight reaches a visible surface"});
     }
     effects.sun = effects.penumbra = false;
     culled.push_back(

@@ -134,7 +134,7 @@ class Rows {
     }
     return fmt::format(
         "part of its disc shines; half angle {:.3g} deg: {}", scene_.earth->half_angle_deg,
-        e_.earth_by_gather ? "met by rays over the hemisphere, no rays of its own" : "shadow rays");
+        e_.earth_by_gather ? "found by hemisphere rays, without separate rays" : "shadow rays");
   }
 
   void lamps_of(std::size_t kind) {

@@ -240,7 +240,7 @@ class Coincidence {
           "faces of {} and {} are {:.2g} m apart, {:.3g} m from the scene's centre of detail, "
           "where "
           "single precision makes rays start {:.2g} m off surfaces: light and shadow between them "
-          "are wrong. Leave out what is far away, or render that part as a scene of its own",
+          "are wrong. Leave out distant objects, or render them as a separate scene",
           in_quotes(scene_.objects[objects.first].name),
           in_quotes(scene_.objects[objects.second].name), gap.height_m, gap.away_m, gap.offset_m));
     }

@@ -39,7 +39,7 @@ void name_small_objects(Scene& scene) {
   scene.warnings.push_back(fmt::format(
       "{} {} too small for single precision {:.3g} m from the scene's centre of detail: rays start "
       "{:.2g} m off surfaces there, and light and shadow from nearer than that are lost. Check the "
-      "place and scale of {}, or leave out what is far away",
+      "place and scale of {}, or leave out distant objects",
       listed(small), small.size() == 1 ? "is" : "are", farthest_m, most_offset_m,
       small.size() == 1 ? "that object" : "the objects"));
 }

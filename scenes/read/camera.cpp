@@ -12,8 +12,8 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr std::string_view camera_keys[] = {
-    "name", "position",   "look_at", "up",           "fov_deg",      "focus",  "aperture",
-    "cctv", "resolution", "filter",  "filter_width", "range_sensor", "fx",     "fy",
+    "name", "position",   "look_at", "up",           "fov_deg",      "focus",   "aperture",
+    "cctv", "resolution", "filter",  "filter_width", "range_sensor", "fx",      "fy",
     "cx",   "cy",         "K",       "pixel_origin", "distortion",   "fisheye", "joint"};
 constexpr std::string_view pixel_origins[] = {"corner", "center"};
 constexpr Range focal_px{0.0, 1e7, true};
@@ -97,8 +97,8 @@ bool replaces(const TableReader& table, std::string_view key, std::string_view o
     return table.where(one).file != table.where().file;
   };
   if (is_override(key) == is_override(other)) {
-    table.fail(other, fmt::format("stands beside \"{}\"", key), "a camera has one of them",
-               fmt::format("Remove {} or {}", other, key));
+    table.fail(other, fmt::format("cannot be combined with \"{}\"", key),
+               "a camera has one of them", fmt::format("Remove {} or {}", other, key));
   }
   return is_override(key);
 }
@@ -146,7 +146,7 @@ void read_intrinsics(Camera& camera, const TableReader& table) {
 
 void read_distortion(Camera& camera, const TableReader& table) {
   if (table.has("distortion") && table.has("fisheye")) {
-    table.fail("fisheye", "stands beside \"distortion\"", "a lens has one of them");
+    table.fail("fisheye", "cannot be combined with \"distortion\"", "a lens has one of them");
   }
   const char* key = table.has("fisheye") ? "fisheye" : "distortion";
   if (!table.has(key)) return;
@@ -160,7 +160,7 @@ void read_distortion(Camera& camera, const TableReader& table) {
   camera.distortion = is_fisheye ? Distortion::Fisheye : Distortion::BrownConrady;
   std::copy(k.begin(), k.end(), camera.distortion_k.begin());
   if (is_fisheye && camera.aperture_m > 0.0) {
-    table.fail("fisheye", "stands beside \"aperture\"",
+    table.fail("fisheye", "cannot be combined with \"aperture\"",
                "a fisheye lens has no plane in focus: its depth of field is unlimited");
   }
   if (!Projection(camera, camera.columns, camera.rows).covers_picture()) {

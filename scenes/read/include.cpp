@@ -137,7 +137,7 @@ class Includer {
     throw Error(
         Blame::Input, unit == nullptr ? base::Location{path.string()} : unit->where,
         fmt::format("its unit is {}, that of the scene {}", in_quotes(own), in_quotes(unit_)),
-        "a scene and what it includes have one unit");
+        "a scene and its included files have one unit");
   }
 
   static void merge(TomlTable& root, TomlTable included) {

@@ -52,7 +52,7 @@ bool is_same_pose(const Instance& a, const Instance& b) {
 void check_alone(const Scene& scene, const TableReader& table, const Instance& instance) {
   const auto refuse = [&table](const std::string& name) {
     table.fail("instance_of", fmt::format("puts it exactly where {} stands", in_quotes(name)),
-               "a surface is in the scene once", "Give it a pose of its own");
+               "a surface is in the scene once", "Give it a separate pose");
   };
   if (is_same_pose(instance, Instance{})) refuse(scene.objects[instance.object].name);
   for (const Object& other : scene.objects) {

@@ -31,7 +31,8 @@ Rgb read_strength(const TableReader& table, std::string_view key, double flux_pe
   const auto strength = table.colour(key);
   const auto flux = table.colour("flux");
   if (strength && flux) {
-    table.fail("flux", fmt::format("stands beside \"{}\"", key), "a light has one of the two");
+    table.fail("flux", fmt::format("cannot be combined with \"{}\"", key),
+               "a light has one of the two");
   }
   if (!strength && !flux) {
     table.missing(key, fmt::format("{} = ... ({}) or flux = ... (lm)", key,
@@ -140,7 +141,7 @@ void read_measured(Lamp& lamp, const TableReader& table, double unit_m, Luminair
   const auto flux = table.colour("flux");
   const auto color = table.colour("color");
   if (flux && color) {
-    table.fail("color", "stands beside \"flux\"", "a light has one of the two",
+    table.fail("color", "cannot be combined with \"flux\"", "a light has one of the two",
                "Give the flux as [r, g, b]");
   }
   if (flux) {

@@ -209,9 +209,10 @@ Joint read_track(Scene& scene, const TableReader& table, double unit_m, std::str
   Joint track;
   track.name = std::move(name);
   if (table.has("poses") == table.has("trajectory")) {
-    table.fail(table.has("poses") ? "poses" : "name",
-               table.has("poses") ? "stands beside \"trajectory\"" : "comes without a motion",
-               "a track has poses = \"FILE.csv\" or trajectory = \"FILE.oem\"");
+    table.fail(
+        table.has("poses") ? "poses" : "name",
+        table.has("poses") ? "cannot be combined with \"trajectory\"" : "comes without a motion",
+        "a track has poses = \"FILE.csv\" or trajectory = \"FILE.oem\"");
   }
   const bool by_poses = table.has("poses");
   for (const char* key : {"attitude", "body_axes", "quaternion", "origin"}) {

@@ -44,7 +44,7 @@ MaterialChoice::MaterialChoice(Scene& scene, const TableReader& object, ShelvedM
   override_ = own_material(*name);
   if (override_ != no_index) return;
   const auto names = names_of(scene.materials, own_material_count);
-  object.fail("material", fmt::format("is {}, which nobody defines", in_quotes(*name)),
+  object.fail("material", fmt::format("is {}, which is not defined", in_quotes(*name)),
               names.empty() ? "the scene has no [[material]]" : "the scene has: " + listed(names),
               did_you_mean(*name, names));
 }
@@ -88,8 +88,7 @@ std::uint32_t MaterialChoice::find(const std::string& name, const base::Location
   names.insert(names.end(), more.begin(), more.end());
   throw base::Error(
       base::Blame::Input, place,
-      fmt::format("the material {} of {} is one that nobody defines", in_quotes(name),
-                  object_.label()),
+      fmt::format("the material {} of {} is not defined", in_quotes(name), object_.label()),
       names.empty() ? "neither the scene nor the mesh defines any"
                     : "the scene and the mesh define: " + listed(names),
       fmt::format("Add [[material]] with name = {} to the scene, or material = ... to the object",

@@ -46,7 +46,7 @@ int read_segments(const TableReader& table, std::uint64_t (*faces_of)(std::uint6
   const auto given = table.whole("segments", fewest_segments, most_segments);
   const auto turn_deg = table.number("round_deg", turns_deg);
   if (given && turn_deg) {
-    table.fail("round_deg", "stands beside \"segments\"", "a shape has one of the two");
+    table.fail("round_deg", "cannot be combined with \"segments\"", "a shape has one of the two");
   }
   const int segments =
       given ? *given
@@ -258,7 +258,8 @@ Placement read_object(Scene& scene, const TomlNode& node, double unit_m, const J
   object.velocity_m_s = read_velocity(table);
   const auto named = table.text("mesh");
   const auto shape = table.choice("shape", shapes);
-  if (named && shape) table.fail("shape", "stands beside \"mesh\"", "an object is one of the two");
+  if (named && shape)
+    table.fail("shape", "cannot be combined with \"mesh\"", "an object is one of the two");
   if (!named && !shape) {
     table.missing("mesh",
                   "mesh = \"FILE\", shape = \"quad\", \"box\", \"sphere\", ... or instance_of = "

@@ -30,7 +30,7 @@ constexpr std::string_view example_direction = "direction = [x, y, z]";
 // Rejects keys that [orbit] determines.
 void refuse_beside_orbit(const TableReader& table, std::string_view key) {
   if (!table.has(key)) return;
-  table.fail(key, "stands beside [orbit]", "[orbit] already determines it",
+  table.fail(key, "cannot be combined with [orbit]", "[orbit] already determines it",
              "Remove the key, or [orbit]");
 }
 
@@ -54,7 +54,7 @@ void read_disc(Earth& earth, const TableReader& table, bool by_orbit) {
     return;  // set by the movement along the orbit
   } else if (earth.model == EarthModel::Uniform && table.has("half_angle_deg")) {
     if (table.has("altitude_km")) {
-      table.fail("half_angle_deg", "stands beside \"altitude_km\"",
+      table.fail("half_angle_deg", "cannot be combined with \"altitude_km\"",
                  "the disc is given by one of the two");
     }
     earth.half_angle_deg = *table.number("half_angle_deg", {0.0, 90.0, true, true});
@@ -148,7 +148,8 @@ void read_moon(Scene& scene, const TableReader& table) {
   scene.moon = Moon();
   if (mission_of(scene) != nullptr) {
     for (const std::string_view key : moon_keys) {
-      if (table.has(key)) table.fail(key, "stands beside a trajectory", "the date determines it");
+      if (table.has(key))
+        table.fail(key, "cannot be combined with a trajectory", "the date determines it");
     }
     return;
   }
@@ -173,7 +174,7 @@ void read_attitude(Scene& scene, Orbit& orbit, const TableReader& table) {
   const auto attitude = table.choice("attitude", attitudes);
   if (const auto file = table.text("attitude_table")) {
     if (attitude) {
-      table.fail("attitude_table", "stands beside \"attitude\"",
+      table.fail("attitude_table", "cannot be combined with \"attitude\"",
                  "the attitude is given by one of the two");
     }
     orbit.attitude.clear();

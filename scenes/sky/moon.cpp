@@ -28,8 +28,9 @@ Rgb moon_illuminance_lx(const Rgb& sun_lx, double phase_deg, double distance_m,
 void add_moon_lamp(Scene& scene, const base::Location& where) {
   if (std::any_of(scene.lamps.begin(), scene.lamps.end(),
                   [](const Lamp& lamp) { return lamp.name == moon_name; })) {
-    throw base::Error(base::Blame::Input, where, "[moon] stands beside a [[light]] named \"moon\"",
-                      {}, "Give the light another name");
+    throw base::Error(base::Blame::Input, where,
+                      "[moon] cannot be combined with a [[light]] named \"moon\"", {},
+                      "Give the light another name");
   }
   Lamp lamp;
   lamp.name = lamp.group = moon_name;

@@ -53,7 +53,7 @@ TableReader::TableReader(const TomlNode& node, std::string title, KeyList keys)
   if (table_ == nullptr) {
     throw Error(Blame::Input, node.where,
                 fmt::format("{} where {} is wanted", describe(node), label_), {},
-                fmt::format("Write {} on a line of its own and the keys below it", label_));
+                fmt::format("Write {} on a separate line and the keys below it", label_));
   }
   for (const TomlEntry& entry : *table_) {
     if (std::find(keys.begin(), keys.end(), entry.key) != keys.end()) continue;

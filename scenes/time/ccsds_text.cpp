@@ -124,7 +124,7 @@ CcsdsMessage read_ccsds(const std::filesystem::path& path, std::string_view kind
 void CcsdsMeta::add(const CcsdsLine& line, std::vector<std::string>& unknown) {
   if (const CcsdsLine* before = find(line.key)) {
     throw Error(Blame::Input, line.where, fmt::format("{} is there twice", line.key),
-                fmt::format("the first stands in line {}", before->where.line));
+                fmt::format("the first is in line {}", before->where.line));
   }
   if (std::find(known_.begin(), known_.end(), line.key) == known_.end() &&
       std::find(unknown.begin(), unknown.end(), line.key) == unknown.end()) {

@@ -81,7 +81,8 @@ void read_positions(StudyFile& study, const TableReader& root) {
   const TomlEntry* entry = root.find("orbit");
   if (const TomlEntry* time = root.find("time")) {
     if (entry != nullptr) {
-      root.fail("time", "stands beside [orbit]", "a study goes along time or along positions");
+      root.fail("time", "cannot be combined with [orbit]",
+                "a study goes along time or along positions");
     }
     study.time = scenes::read_time(time->node);
   }
@@ -91,7 +92,7 @@ void read_positions(StudyFile& study, const TableReader& root) {
   const TomlEntry* list = orbit.find("positions_deg");
   if (count.has_value() == (list != nullptr)) {
     orbit.fail(count ? "positions_deg" : "positions",
-               count ? "stands beside \"positions\"" : "is missing",
+               count ? "cannot be combined with \"positions\"" : "is missing",
                "allowed is either positions = 36 or positions_deg = [0, 90]");
   }
   if (count) {
@@ -158,7 +159,8 @@ PictureWish read_picture(const TomlNode& node, std::vector<std::string>& warning
   wish.position_deg = table.number("position_deg", {-360.0, 360.0});
   wish.time = scenes::read_moment(table, "time");
   if (wish.time && wish.position_deg) {
-    table.fail("time", "stands beside \"position_deg\"", "a picture is at one of the two");
+    table.fail("time", "cannot be combined with \"position_deg\"",
+               "a picture is at one of the two");
   }
   wish.lamps = table.text("lamps").value_or("");
   const std::string shows = table.choice("shows", shows_words).value_or("clean");
@@ -264,7 +266,7 @@ StudyFile read_study_file(const std::filesystem::path& path) {
   study.name = root.text("name").value_or(path.stem().string());
   const std::optional<std::string> scene = root.text("scene");
   if (scene && root.has("scenes")) {
-    root.fail("scenes", "stands beside \"scene\"", {}, "Keep one of them");
+    root.fail("scenes", "cannot be combined with \"scene\"", {}, "Keep one of them");
   }
   const std::vector<std::string> scenes = scene ? std::vector{*scene} : texts(root, "scenes");
   if (scenes.empty()) root.missing("scene", "scene = \"bay.toml\"");

@@ -100,7 +100,7 @@ class CctvCamera(program.Case):
         says(self.write("bad.toml", CAMERAS.replace("glare", "glair")) + ":quiet", "bad.toml:4:1", "glare")
         for beside in (("--preset", "ideal"), ("--scene", "ball.toml")):
             message = self.refused("degrade", "a.exr", "-o", "c.png", "--cctv", "ideal", *beside)
-            self.says(message, "--cctv", "stands beside")
+            self.says(message, "--cctv", "cannot be combined with")
         self.says(self.refused("degrade", "one.toml", "-o", "one.toml", "--cctv", "one.toml"), ".png")
 
 

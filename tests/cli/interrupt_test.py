@@ -105,7 +105,7 @@ class BrokenOff(program.Case):
     def test_a_solve_keeps_what_it_had_come_to(self):
         code, out, err, seconds = self.stopped("solve", "ball.toml", "--error", "0.0005", "-o", "a.h5", "--json")
         self.assertEqual(code, 1, err)
-        self.says(err, "interrupted", "What it had come to is in a.h5")
+        self.says(err, "interrupted", "The partial result is in a.h5")
         report = json.loads(out)
         self.assertEqual(report["error"]["limit"], "stopped")
         self.assertGreater(report["error"]["estimate"], 0.0005)

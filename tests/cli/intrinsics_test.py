@@ -109,7 +109,7 @@ class Intrinsics(program.Case):
     def test_refusals(self):
         for lens, words in ((f"fx = {FX}\nfov_deg = 40", "fov_deg"), ("cx = 3", "without"), ("distortion = [1, 2]", "2 numbers"),
                             (f"fx = {FX}\ndistortion = [-3, 0, 0, 0]", "does not reach"), ("K = [1, 2, 3]", "no matrix"),
-                            (f"fx = {FX}\nfisheye = [0, 0, 0, 0]\ndistortion = [0, 0, 0, 0]", "beside"),
+                            (f"fx = {FX}\nfisheye = [0, 0, 0, 0]\ndistortion = [0, 0, 0, 0]", "cannot be combined"),
                             (f"fx = {FX}\nfisheye = [0, 0, 0, 0]\naperture = 0.1\nfocus = 2", "aperture")):
             self.write("a.toml", scene(lens))
             self.says(self.refused("render", "a.toml", "-o", "a.exr"), "a.toml:", words)

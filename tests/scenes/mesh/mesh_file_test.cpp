@@ -270,7 +270,7 @@ TEST(MeshFile, BrokenMeshesAreRefusedWithTheirPlace) {
   EXPECT_TRUE(holds(folder.refusal(object("a.obj", "")), {"a.obj:1:8", "a.mtl", "No such file"}));
   folder.put("a.mtl", "newmtl y\n");
   EXPECT_TRUE(holds(folder.refusal(object("a.obj", "")),
-                    {"a.obj:6", "\"x\"", "nobody defines", "m, y", "Add [[material]]"}));
+                    {"a.obj:6", "\"x\"", "is not defined", "m, y", "Add [[material]]"}));
   folder.put("a.mtl", "newmtl x\nKd 0.9 2 0.9\n");
   EXPECT_TRUE(holds(folder.refusal(object("a.obj", "")), {"a.mtl:2:4", "is 2", "from 0 to 1"}));
   folder.put("a.obj", three + "f 1 2 3\n");

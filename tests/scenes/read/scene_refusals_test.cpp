@@ -177,7 +177,7 @@ TEST(SceneFile, KeysThatDoNotGoTogetherAreRefused) {
        Case{"NoMaterial", box, {"scene.toml:2:1", "has no \"material\""}},
        Case{"UnknownMaterial",
             "[[material]]\nname = \"white-paint\"\n" + box + "material = \"white-pant\"\n",
-            {"scene.toml:9:1", "nobody defines", "Did you mean \"white-paint\"?"}},
+            {"scene.toml:9:1", "is not defined", "Did you mean \"white-paint\"?"}},
        Case{"BoxInsideOut",
             "[[object]]\nname = \"o\"\nshape = \"box\"\nmin = [0, 0, 2]\nmax = [1, 1, 1]\n",
             {"scene.toml:6:1", "\"max\"", "above that of min"}},

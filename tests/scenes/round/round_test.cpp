@@ -208,7 +208,7 @@ TEST(Round, ShapesChooseTheirSegmentsByTheAngle) {
   EXPECT_EQ(polygons("segments = 9\n"), 9U);
   EXPECT_TRUE(holds(folder.refusal(head + "shape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n"
                                           "segments = 9\nround_deg = 5\n"),
-                    {"scene.toml:11", "stands beside"}));
+                    {"scene.toml:11", "cannot be combined with"}));
   folder.put("a.obj", obj_of(make_box({0, 0, 0}, {1, 1, 1}), false));
   EXPECT_TRUE(holds(folder.refusal(head + "mesh = \"a.obj\"\nround_deg = 5\n"),
                     {"no vertex normals", "smooth_deg"}));

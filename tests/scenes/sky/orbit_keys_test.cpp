@@ -104,7 +104,7 @@ TEST(OrbitKeys, WhatDoesNotGoTogetherIsRefused) {
       {orbit_text + "[earth]\nalbedo_by = \"longitude\"\n", {"albedo_by", "latitude"}},
       {orbit_text + "[earth]\nalbedo_a0 = 0.3\n", {"albedo_a0", "albedo_by = \"latitude\""}},
       {orbit_text + "[earth]\nalbedo_by = \"latitude\"\nnorth = [0, 0, 1]\n",
-       {"scene.toml:6:", "north", "stands beside [orbit]"}},
+       {"scene.toml:6:", "north", "cannot be combined with [orbit]"}},
       {orbit_text + "[earth]\nalbedo_by = \"latitude\"\nalbedo_a0 = 1.5\n", {"albedo_a0", "1.5"}},
       {orbit_text + "[earth]\nmodel = \"uniform\"\nradiance = 1\nalbedo_by = \"latitude\"\n",
        {"albedo_by", "belongs to model \"lambert\""}},
