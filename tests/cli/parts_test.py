@@ -104,7 +104,7 @@ class SameBytes(PartCase):
         self.assertEqual((copy / "w-A.exr").read_bytes(), whole["v-A.exr"])
         for piece in (copy / "w.exr.parts").glob("*.exr"):
             piece.unlink()
-        self.says(self.refused("merge", "copy/w.exr.parts", code=1), "copy/w.exr", "--part 1/2", f"missing in '{self.folder.resolve()}'")
+        self.says(self.refused("merge", "copy/w.exr.parts", code=1), "copy/w.exr", "--part 1/2", f"missing parts in '{self.folder.resolve()}'")
         (copy / "w.exr.parts").rename(copy / "w")
         self.says(self.refused("merge", "copy/w"), "has the parts of v.exr", ".parts")
         self.done("study", "visibility", "ball.toml", "-o", "d/", "--size", "8x8", "--part", "1/1", "-q")

@@ -37,7 +37,7 @@ ROWS = [
     ("", ["--indirect", "distributed"], "penumbra", False, "distributed"),
     ("", [], "earth", False, "no [earth]"),
     (EARTH.format(0, 60), [], "earth", False, "earth.radiance is 0"),
-    (EARTH.format(1, 60), [], "earth", True, "no rays of its own"),
+    (EARTH.format(1, 60), [], "earth", True, "without separate rays"),
     (EARTH.format(1, 5), [], "earth", True, "shadow rays"),
     ("\n[earth]\ndirection = [0, 0, -1]\naltitude_km = 300\nalbedo = 0\n", [], "earth", False, "earth.albedo is 0"),
     ("\n[earth]\ndirection = [-0.3, 0.2, 1]\naltitude_km = 300\n", [], "earth", False, "dark"),

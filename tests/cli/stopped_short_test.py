@@ -40,7 +40,7 @@ class StoppedShort(program.Case):
         self.assertTrue((self.folder / "a.h5").exists())
         # The same error after reading it again, and more time does not reduce it.
         out, line = self.short("solve", "ball.toml", "--error", "0.002", "--solution", "a.h5", "--json")
-        self.says(line, "taken as it is")
+        self.says(line, "used unchanged")
         error = json.loads(out)["error"]
         self.assertEqual((error["limit"], error["seconds_to_go"]), ("given", None))
         self.assertEqual(error["steps"][0]["patches"], json.loads(out)["patches"])
