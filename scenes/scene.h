@@ -81,8 +81,7 @@ struct Triangle {
   std::uint32_t vertex[3];
   std::uint32_t object;
   std::uint32_t material;
-  std::uint32_t
-      polygon;  // index over the scene, shared by the triangles of one file polygon
+  std::uint32_t polygon;  // index over the scene, shared by the triangles of one file polygon
 };
 
 // Two triangles that partly coincide within ray accuracy, and which one is in front
@@ -155,7 +154,7 @@ struct Lamp {
   Vec3 c0{1.0, 0.0, 0.0};  // measured: unit, across the axis, in the plane C0; C90: c0 x axis
   std::shared_ptr<const Photometry> photometry;  // measured
   std::string source;                            // measured: the file, as the scene names it
-  Rgb illuminance_lx{0.0};  // distant: on an unoccluded plane that faces it
+  Rgb illuminance_lx{0.0};                       // distant: on an unoccluded plane that faces it
 
   [[nodiscard]] bool is_distant() const { return kind == LampKind::Distant; }
   // 0 without light; in the unit of the lamp's kind.
@@ -265,10 +264,10 @@ struct Camera {
   std::optional<std::array<double, 4>> intrinsics;
   Distortion distortion = Distortion::None;
   std::array<double, 5> distortion_k{};  // k1, k2, p1, p2, k3; of a fisheye k1 to k4
-  double focus_m = 0.0;      // } thin lens when both are positive
-  double aperture_m = 0.0;   // } diameter
-  std::string cctv;          // a [[cctv]] of the scene or a built-in one; empty: none
-  std::string range_sensor;  // a [[range_sensor]] of the scene; empty: none
+  double focus_m = 0.0;                  // } thin lens when both are positive
+  double aperture_m = 0.0;               // } diameter
+  std::string cctv;                      // a [[cctv]] of the scene or a built-in one; empty: none
+  std::string range_sensor;              // a [[range_sensor]] of the scene; empty: none
   FilterShape filter = FilterShape::Box;
   double filter_width_px = 1.0;  // full width of the filter's support
   base::Location where;          // of its position in the scene file

@@ -279,8 +279,7 @@ SamplePlan SamplePlanner::plan_for_specks(double most_cost) const {
         plan.cost += costs_.field[k] * more;
       }
     }
-    const double camera =
-        stated_.squared[speck.pixel][static_cast<std::size_t>(ErrorPart::Camera)];
+    const double camera = stated_.squared[speck.pixel][static_cast<std::size_t>(ErrorPart::Camera)];
     if (camera < speck.squared_error / 8.0) continue;
     plan.camera[speck.pixel] *= 4U;
     plan.cost += 3.0 * (costs_.camera * sums_.samples[speck.pixel] +

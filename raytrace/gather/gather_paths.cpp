@@ -98,7 +98,8 @@ void GatherField::lobe_sample(std::uint32_t material, const RayStart& start,
   incoming_.add(hit, direction, {}, weight, sum, counts);
   if (!setting_.gathers_residual || hit.missed()) return;
   const auto residual = walker.residual(incoming_, {origin, direction}, hit, {}, rng);
-  for (std::size_t layer = 0; layer < image_layers_; ++layer) sum[layer] += weight * residual[layer];
+  for (std::size_t layer = 0; layer < image_layers_; ++layer)
+    sum[layer] += weight * residual[layer];
 }
 
 }  // namespace earthshine::raytrace

@@ -58,7 +58,8 @@ class LightSampler {
   [[nodiscard]] bool may_reach(std::size_t light, const Vec3& point, const Vec3& normal) const;
   // Position of a lamp without size that shines directly, or nullptr.
   [[nodiscard]] const Vec3* lamp_point(std::size_t light) const {
-    return light < sources_ && delta_lights_[light].is_delta ? &delta_lights_[light].position : nullptr;
+    return light < sources_ && delta_lights_[light].is_delta ? &delta_lights_[light].position
+                                                             : nullptr;
   }
   // visit(light) for each light that may reach such a surface, without Suns of other strata.
   template <class Visit>
@@ -91,6 +92,7 @@ class LightSampler {
     const auto u = uniform(light);
     return sample(light, point, double(u[0]), double(u[1]));
   }
+
  private:
   enum class Kind { Sun, SunPart, Earth, EarthArea, Lamp, Emitters };
   struct Light {
@@ -105,7 +107,7 @@ class LightSampler {
   // Lamps without size, or their images: one ray to a point, within the lamp's cone and, for
   // images, through the mirror.
   struct DeltaLight {
-    bool is_delta = false;         // whether the light has no size
+    bool is_delta = false;       // whether the light has no size
     double field_cosine = -2.0;  // spot lamps: of half the field angle; others shine in all
                                  // directions
     double lamp_height_m = 0.0;  // above the mirror
@@ -147,8 +149,8 @@ class LightSampler {
   std::vector<Light> lights_;  // the sources themselves, then their images
   std::size_t sources_ = 0;
   std::vector<DeltaLight> delta_lights_;     // by light
-  std::vector<MirrorLights> mirror_lights_;       // directly, then by each mirror
-  std::vector<std::size_t> always_;  // lights with a certain shadow ray
+  std::vector<MirrorLights> mirror_lights_;  // directly, then by each mirror
+  std::vector<std::size_t> always_;          // lights with a certain shadow ray
   std::vector<Cluster> clusters_;
   Cluster surfaces_{scenes::LightTree({}), {}};  // lamps with a visible surface, by their numbers
                                                  // in the tree

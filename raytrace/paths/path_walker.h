@@ -118,7 +118,7 @@ class PathWalker {
   bool met_surface_ = false;
   double source_luminance_ = 0.0;
   std::size_t sun_stratum_ = 0;
-  MisContext share_;                 // MIS context of the last ray
+  MisContext share_;               // MIS context of the last ray
   double kept_ = 1.0;              // MIS weight of the surface that it met
   bool goes_straight_on_ = false;  // passed that surface as straight glass
 };

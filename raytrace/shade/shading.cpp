@@ -191,7 +191,8 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
   const double most =
       surface.material().even_lobe ? 1.0 / std::max(surface.brdf.cos_view, 1e-3) : 1.0;
   shared_.lights.choose(
-      {surface.position, surface.brdf.normal, surface.brdf.mirrored, base::max_component(surface.brdf.diffuse),
+      {surface.position, surface.brdf.normal, surface.brdf.mirrored,
+       base::max_component(surface.brdf.diffuse),
        most * base::max_component(surface.material().specular), surface.material().shininess},
       double(choice[0]) + 0x1p-24 * double(choice[1]), chosen_);
   std::optional<Vec3> on_sun;

@@ -20,7 +20,8 @@ void PixelShader::diffuse(const Surface& surface, const Rgb& weight, int depth) 
 GatherField::Reading PixelShader::read_points(const Surface& surface, Gathered kind) const {
   const GatherField& field = *shared_.field;
   const Vec3 seen = mirror_ ? mirror_->image(surface.position) : surface.position;
-  const Vec3 normal = mirror_ ? glm::reflect(surface.brdf.normal, mirror_->normal) : surface.brdf.normal;
+  const Vec3 normal =
+      mirror_ ? glm::reflect(surface.brdf.normal, mirror_->normal) : surface.brdf.normal;
   const Sighting place{glm::vec3(seen - shared_.sighting_origin), glm::vec3(normal),
                        mirror_.has_value()};
   std::size_t own = field.find(x_, y_, place);

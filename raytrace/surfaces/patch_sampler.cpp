@@ -94,8 +94,8 @@ void PatchSampler::gather(const SurfaceSpot& from, const base::SobolOwen4& seque
 
 // An aimed ray adds only the light of its target patch, seen directly or through glass that does
 // not bend the ray.
-void PatchSampler::aim(const SurfaceSpot& from, const std::array<float, 4>& u, const MisContext& all,
-                       std::size_t entry) {
+void PatchSampler::aim(const SurfaceSpot& from, const std::array<float, 4>& u,
+                       const MisContext& all, std::size_t entry) {
   const IncomingLight::Aimed aimed =
       incoming_.aim({from.at + from.lift, from.normal}, double(u[0]), double(u[1]), double(u[2]),
                     all.cosine_samples, all.aimed_rays);

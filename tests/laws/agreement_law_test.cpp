@@ -26,7 +26,7 @@ struct Effort {
   std::size_t max_patches = 6000;
   int gather_rays = 256;  // per pixel and replicate
   int camera_samples = 64;
-  int paths = 1024;       // per pixel, in each of two pictures
+  int paths = 1024;  // per pixel, in each of two pictures
   raytrace::PathSet path_set = raytrace::PathSet::NoCaustics;
 };
 

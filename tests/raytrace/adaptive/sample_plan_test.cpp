@@ -154,7 +154,7 @@ TEST(SamplePlan, SpecksAreDeviationsThatAPixelsLightDoesNotHide) {
     double luminance, deviation;  // of the mean, over the threshold
     bool is_speck;
   };
-  const Row rows[] = {{1, 1.0, 0.9, false}, {3, 1.0, 1.1, true}, {5, dark, 0.9, false},
+  const Row rows[] = {{1, 1.0, 0.9, false}, {3, 1.0, 1.1, true},  {5, dark, 0.9, false},
                       {7, dark, 1.1, true}, {9, 0.0, 0.9, false}, {11, 0.0, 1.2, true}};
   PixelSums sums = quiet(16);
   for (const Row& row : rows) {
