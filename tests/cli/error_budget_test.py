@@ -146,7 +146,7 @@ class ErrorBudget(program.Case):
                 self.assertIsNone(target["estimate"])
             self.assertNotIn("earthshine:error.estimate", exr.read(self.folder / "a.exr")[0])
         self.assertIsNone(self.json("solve", "dark.toml")["error"]["estimate"])
-        self.says(self.run_program("render", "dark.toml", "-o", "a.exr", "--camera", "A").stderr, "no error can be told")
+        self.says(self.run_program("render", "dark.toml", "-o", "a.exr", "--camera", "A").stderr, "the error is unknown")
 
     def test_the_sky_alone_has_no_error(self):
         error = self.render("--set", "camera.A.look_at=[9, -9, 9]")["error"]
