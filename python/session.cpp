@@ -306,23 +306,23 @@ std::shared_ptr<Frame> Session::render(const std::string& request_text,
     given.solved = true;
   }
   const app::Solved& solved = light ? given : s.light_for(call, common, times);
-  app::Studio studio{call, common, s.loaded, *s.query, solved};
+  app::RenderContext context{call, common, s.loaded, *s.query, solved};
   if (call.time_limit_s > 0.0) {
-    studio.time_limit_s = std::max(1e-3, call.time_limit_s - times.total());
+    context.time_limit_s = std::max(1e-3, call.time_limit_s - times.total());
   }
-  app::Drawn drawn = app::draw_picture(studio, camera, times);
+  app::Drawn drawn = app::draw_picture(context, camera, times);
   leave_if_asked();
   ++s.pictures;
   auto frame = std::make_shared<Frame>();
   frame->fov_deg = camera.fov_deg;
-  Json report = app::frame_json(studio, camera, drawn.frame, times);
+  Json report = app::frame_json(context, camera, drawn.frame, times);
   report["error"] =
       app::error_json(drawn, call.no_error ? std::nullopt : s.loaded.scene.quality.error);
   report["groups"] = s.loaded.groups.names;
   report["objects"] = list_of(s.loaded.scene.objects, [](const auto& o) { return o.name; });
   report["materials"] = list_of(s.loaded.scene.materials, [](const auto& m) { return m.name; });
   frame->report = app::dump(report);
-  frame->file.header = app::picture_header(studio, camera, drawn);
+  frame->file.header = app::picture_header(context, camera, drawn);
   frame->file.image = std::move(drawn.frame.image);
   try {
     app::CctvSetup cctv = app::cctv_of_camera(s.loaded.scene, camera, common);

@@ -114,12 +114,12 @@ void fill_solution(const scenes::World& world, const FormFactors& factors, bool 
   const std::size_t begin = own.begin;
   const CoveredPatches covered(patches, factors.open);
   // row_of(row, values): fills the values of an own row.
-  const auto tell = [&](std::vector<float>& values, auto row_of) {
+  const auto gather_rows = [&](std::vector<float>& values, auto row_of) {
     values.resize(patches.count() * columns);
     base::parallel_chunks(own.end - begin, 4096, [&](std::size_t from, std::size_t to) {
       for (std::size_t row = from; row < to; ++row) row_of(row, &values[(begin + row) * columns]);
     });
-    factors.shares.tell(values.data(), columns);
+    factors.shares.all_gather(values.data(), columns);
     covered.show_neighbours(values, columns);
   };
   const auto copy_of = [columns](const std::vector<double>& from) {
@@ -127,12 +127,12 @@ void fill_solution(const scenes::World& world, const FormFactors& factors, bool 
       std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(row * columns), columns, values);
     };
   };
-  tell(solution.radiosity, copy_of(light.radiosity));
+  gather_rows(solution.radiosity, copy_of(light.radiosity));
   base::release(light.radiosity);
-  tell(solution.direct_lx, copy_of(light.direct));
+  gather_rows(solution.direct_lx, copy_of(light.direct));
   base::release(light.direct);
   const std::size_t sky_parts = scenes::earth_parts(world.scene);
-  tell(solution.indirect_radiosity, [&](std::size_t row, float* values) {
+  gather_rows(solution.indirect_radiosity, [&](std::size_t row, float* values) {
     const std::size_t i = begin + row;
     const Rgb diffuse = patch_diffuse(world.scene, patches, static_cast<std::uint32_t>(i));
     for (std::size_t k = 0; k < columns; ++k) {
@@ -145,7 +145,7 @@ void fill_solution(const scenes::World& world, const FormFactors& factors, bool 
       values[k] = static_cast<float>(reflected);
     }
   });
-  tell(solution.indirect_lx, copy_of(light.indirect));
+  gather_rows(solution.indirect_lx, copy_of(light.indirect));
 }
 
 std::vector<bool> sky_groups(const scenes::World& world) {

@@ -7,10 +7,10 @@
 #include <set>
 
 #include "base/error.h"
+#include "radiosity/broadcast_solution.h"
 #include "radiosity/fill_solution.h"
 #include "radiosity/linear_solve.h"
 #include "radiosity/refine.h"
-#include "radiosity/tell_solution.h"
 #include "scenes/reflect/energy.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_cells.h"
@@ -54,12 +54,12 @@ std::vector<std::uint32_t> connected_parts(const FormFactors& f) {
   for (std::uint32_t i = 0; i < f.count(); ++i) {
     for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) join(i, f.column[e]);
   }
-  f.shares.hear([&](base::Parcel& parcel) { parcel.pass(parent); },
-                [&](base::Parcel& parcel) {
-                  std::vector<std::uint32_t> theirs;
-                  parcel.pass(theirs);
-                  for (std::uint32_t i = 0; i < f.count(); ++i) join(i, theirs[i]);
-                });
+  f.shares.sequential_reduce([&](base::Parcel& parcel) { parcel.pass(parent); },
+                             [&](base::Parcel& parcel) {
+                               std::vector<std::uint32_t> theirs;
+                               parcel.pass(theirs);
+                               for (std::uint32_t i = 0; i < f.count(); ++i) join(i, theirs[i]);
+                             });
   for (std::uint32_t i = 0; i < f.count(); ++i) parent[i] = root(i);
   return parent;
 }
@@ -81,12 +81,12 @@ void check_enclosure(const scenes::Scene& scene, const Patches& patches, const F
       takes[3 * i + c] = factors.kept[i] - reflectance[3 * (i - begin) + c] > rounding;
     }
   }
-  factors.shares.tell(takes.data(), 3);
+  factors.shares.all_gather(takes.data(), 3);
   if (std::find(takes.begin(), takes.end(), 0) == takes.end()) return;
   const std::vector<std::uint32_t> part = connected_parts(factors);
   std::vector<std::uint8_t> lit(columns * count, 0);
   for (std::size_t k = 0; k < source.size(); ++k) lit[begin * columns + k] = source[k] > 0.0;
-  factors.shares.tell(lit.data(), columns);
+  factors.shares.all_gather(lit.data(), columns);
   for (std::size_t c = 0; c < columns; ++c) {
     std::vector<char> part_ends(count, 0), part_lit(count, 0);
     for (std::size_t i = 0; i < count; ++i) {

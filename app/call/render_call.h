@@ -128,7 +128,7 @@ struct Solved {
 class RenderParts;
 
 // Data shared by all pictures of a call.
-struct Studio {
+struct RenderContext {
   const RenderCall& call;
   const Common& common;
   const LoadedScene& loaded;
@@ -160,7 +160,7 @@ struct Picture {
   std::optional<double> white_cd_per_m2 = {};  // of its PNG, with --exposure
   StageTimes times;                            // of the call so far, including this picture
 };
-[[nodiscard]] Picture take_picture(const Studio& studio, const scenes::Camera& camera,
+[[nodiscard]] Picture take_picture(const RenderContext& context, const scenes::Camera& camera,
                                    const PictureFiles& files, StageTimes times);
 // Throws base::Error (Work) with the files of the interrupted picture.
 [[noreturn]] void end_interrupted(const PictureFiles& last);

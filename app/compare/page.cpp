@@ -8,7 +8,7 @@
 #include "app/compare/tables.h"
 #include "app/report/assets.h"
 #include "app/report/text.h"
-#include "studies/compare/yardstick.h"
+#include "studies/compare/target_differences.h"
 
 namespace earthshine::app {
 namespace {

@@ -20,7 +20,7 @@
 #include "raytrace/solve_control/wanted_error.h"
 #include "scenes/effects/quality.h"
 #include "studies/compare/compare.h"
-#include "studies/compare/yardstick.h"
+#include "studies/compare/target_differences.h"
 #include "studies/cost/cost.h"
 #include "studies/cost/memory.h"
 

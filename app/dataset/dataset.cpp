@@ -145,7 +145,7 @@ class DataSet {
   [[nodiscard]] std::vector<std::uint32_t> targets_in(const scenes::Scene& scene) const;
   void write_models(const scenes::Scene& scene) const;
   void place_camera(scenes::Scene& scene, const scenes::RayQuery& query, std::size_t image) const;
-  void write_picture(const Studio& studio, const scenes::Camera& camera, const Drawn& drawn,
+  void write_picture(const RenderContext& context, const scenes::Camera& camera, const Drawn& drawn,
                      const Draw& draw, std::size_t image) const;
 
   Recipe recipe_;
@@ -231,12 +231,12 @@ void DataSet::place_camera(scenes::Scene& scene, const scenes::RayQuery& query,
                     {}, "Widen the bounds of [camera], or reduce its clearance");
 }
 
-void DataSet::write_picture(const Studio& studio, const scenes::Camera& camera, const Drawn& drawn,
-                            const Draw& draw, std::size_t image) const {
+void DataSet::write_picture(const RenderContext& context, const scenes::Camera& camera,
+                            const Drawn& drawn, const Draw& draw, std::size_t image) const {
   const fs::path rgb = folder_.bop("rgb", image);
   const base::Image& picture = drawn.frame.image;
   if (recipe_.cctv) {
-    CctvSetup setup = cctv_of_camera(studio.loaded.scene, camera, studio.common);
+    CctvSetup setup = cctv_of_camera(context.loaded.scene, camera, context.common);
     write_cctv(rgb.string(), setup, run_chain(setup, picture));
     return;
   }
@@ -265,8 +265,8 @@ void DataSet::make(std::size_t image) {
   // The solution is sampled with the data set's seed: images that differ in the camera share it.
   const Solved& light = lights_.take({call, common_, loaded, query, {}, Interrupt::asked}, times);
   Interrupt::leave_if_asked();
-  const Studio studio{call, common, loaded, query, light};
-  const Drawn drawn = draw_picture(studio, camera, times);
+  const RenderContext context{call, common, loaded, query, light};
+  const Drawn drawn = draw_picture(context, camera, times);
   Interrupt::leave_if_asked();
 
   const base::Image& picture = drawn.frame.image;
@@ -286,8 +286,8 @@ void DataSet::make(std::size_t image) {
   const std::vector<float>& depth_m = picture.find("Z")->values;
   const Depth16 depth = depth16(depth_m);
   base::write_png16(folder_.bop("depth", image), map.columns, map.rows, depth.values);
-  write_picture(studio, camera, drawn, draw, image);
-  base::write_exr(folder_.layers(image), picture, picture_header(studio, camera, drawn));
+  write_picture(context, camera, drawn, draw, image);
+  base::write_exr(folder_.layers(image), picture, picture_header(context, camera, drawn));
 
   const raytrace::CameraModel model = raytrace::make_camera_model(camera, map.columns, map.rows);
   Json record = {{"key", key_}, {"image", image}};

@@ -15,11 +15,11 @@
 namespace earthshine::app {
 namespace {
 
-raytrace::Frame trace(const Studio& studio, const scenes::Camera& camera,
+raytrace::Frame trace(const RenderContext& context, const scenes::Camera& camera,
                       const raytrace::RenderOptions& options, const raytrace::Progress& progress) {
-  const LoadedScene& loaded = studio.loaded;
+  const LoadedScene& loaded = context.loaded;
   return raytrace::trace_paths(
-      loaded.world(studio.query), camera,
+      loaded.world(context.query), camera,
       {options.columns, options.rows, options.gather_rays, options.per_light, options.paths,
        options.seed, options.stop, options.crop},
       progress);
@@ -62,34 +62,34 @@ PictureWork work_of(const raytrace::RenderOptions& options) {
   return {Work::Picture, pixels * 0.05 / error};
 }
 
-raytrace::Frame draw_frame(const Studio& studio, const scenes::Camera& camera,
+raytrace::Frame draw_frame(const RenderContext& context, const scenes::Camera& camera,
                            const raytrace::RenderOptions& options) {
-  const LoadedScene& loaded = studio.loaded;
+  const LoadedScene& loaded = context.loaded;
   const auto [work, units] = work_of(options);
   const Progress::Listener progress =
-      studio.common.progress->begin("camera " + camera.name, work, units);
+      context.common.progress->begin("camera " + camera.name, work, units);
   if (options.indirect == raytrace::Indirect::Paths) {
-    return trace(studio, camera, options, progress);
+    return trace(context, camera, options, progress);
   }
-  return raytrace::render(loaded.world(studio.query), studio.light.solution, camera, options,
+  return raytrace::render(loaded.world(context.query), context.light.solution, camera, options,
                           progress);
 }
 
-Drawn draw_picture(const Studio& studio, const scenes::Camera& camera, StageTimes& times) {
-  const LoadedScene& loaded = studio.loaded;
+Drawn draw_picture(const RenderContext& context, const scenes::Camera& camera, StageTimes& times) {
+  const LoadedScene& loaded = context.loaded;
   Drawn drawn;
-  drawn.options = picture_options(studio.call, studio.common, loaded, camera);
-  drawn.options.time_limit_s = studio.time_limit_s;
+  drawn.options = picture_options(context.call, context.common, loaded, camera);
+  drawn.options.time_limit_s = context.time_limit_s;
   const raytrace::RenderOptions& options = drawn.options;
   drawn.frame = times.measure("render", [&] {
-    return studio.parts != nullptr ? studio.parts->joined(camera)
-                                   : draw_frame(studio, camera, options);
+    return context.parts != nullptr ? context.parts->joined(camera)
+                                    : draw_frame(context, camera, options);
   });
-  if (studio.call.no_error) {
-    drawn.errors.not_captured = raytrace::not_captured(studio.scene(), options);
+  if (context.call.no_error) {
+    drawn.errors.not_captured = raytrace::not_captured(context.scene(), options);
     return drawn;
   }
-  drawn.errors = raytrace::error_budget(studio.scene(), {&camera, options}, drawn.frame);
+  drawn.errors = raytrace::error_budget(context.scene(), {&camera, options}, drawn.frame);
   if (const std::size_t pixels = drawn.frame.report.unexplained_pixels; pixels > 0) {
     drawn.errors.not_captured.push_back(
         fmt::format("light in {} pixels that sources send there and no sample found; the error "
@@ -105,11 +105,11 @@ Drawn draw_picture(const Studio& studio, const scenes::Camera& camera, StageTime
         as_set(options) ? ratio * ratio : studies::samples_growth(drawn.frame.report, wanted);
     drawn.seconds_to_go = drawn.frame.report.seconds * (growth - 1.0);
   }
-  if (studio.light.solved) {
+  if (context.light.solved) {
     raytrace::Step solve;
     solve.stage = "solve";
-    solve.patches = studio.light.solution.report.patches;
-    solve.form_factor_rays = studio.light.solution.report.rays_per_patch;
+    solve.patches = context.light.solution.report.patches;
+    solve.form_factor_rays = context.light.solution.report.rays_per_patch;
     solve.asked = wanted;
     drawn.steps.push_back(solve);
   }
@@ -122,9 +122,9 @@ Drawn draw_picture(const Studio& studio, const scenes::Camera& camera, StageTime
   return drawn;
 }
 
-Json probe_json(const Studio& studio, const scenes::Camera& camera,
+Json probe_json(const RenderContext& context, const scenes::Camera& camera,
                 const raytrace::RenderOptions& options, const raytrace::Frame& frame) {
-  const scenes::Scene& scene = studio.loaded.scene;
+  const scenes::Scene& scene = context.loaded.scene;
   const auto luminance_of = [&frame](const std::string& layer) {
     Rgb colour(0.0);
     for (int c = 0; c < 3; ++c) {
@@ -136,7 +136,7 @@ Json probe_json(const Studio& studio, const scenes::Camera& camera,
   };
   const double luminance = luminance_of("");
   std::vector<std::pair<double, std::string>> groups;
-  for (const std::string& name : studio.loaded.groups.names) {
+  for (const std::string& name : context.loaded.groups.names) {
     groups.emplace_back(luminance_of("light_" + name), name);
   }
   std::stable_sort(groups.begin(), groups.end(),
@@ -151,11 +151,11 @@ Json probe_json(const Studio& studio, const scenes::Camera& camera,
       static_cast<std::uint32_t>(frame.window.y) * static_cast<std::uint32_t>(options.columns) +
       static_cast<std::uint32_t>(frame.window.x);
   const std::vector<studies::SeenPoint> points = studies::seen_points(
-      scene, studio.query, camera, options.columns, options.rows, {&pixel, 1}, 1);
+      scene, context.query, camera, options.columns, options.rows, {&pixel, 1}, 1);
   double rest = 1.0, others = 0.0;
-  if (luminance > 0.0 && !points.empty() && !studio.light.broken_off) {
+  if (luminance > 0.0 && !points.empty() && !context.light.broken_off) {
     for (const studies::LightShare& share : studies::light_shares(
-             studio.scene(), studio.light.solution, points, luminance, probe_rays)) {
+             context.scene(), context.light.solution, points, luminance, probe_rays)) {
       rest -= share.share;
       if (share.share < studies::least_light_share) {
         others += share.share;

@@ -23,17 +23,17 @@ struct PictureWork {
 };
 [[nodiscard]] PictureWork work_of(const raytrace::RenderOptions& options);
 // Rays alone, without a statement of what they are worth.
-[[nodiscard]] raytrace::Frame draw_frame(const Studio& studio, const scenes::Camera& camera,
+[[nodiscard]] raytrace::Frame draw_frame(const RenderContext& context, const scenes::Camera& camera,
                                          const raytrace::RenderOptions& options);
-[[nodiscard]] Drawn draw_picture(const Studio& studio, const scenes::Camera& camera,
+[[nodiscard]] Drawn draw_picture(const RenderContext& context, const scenes::Camera& camera,
                                  StageTimes& times);
 
 // Size, rays, patches and seconds of a frame, for --json.
-[[nodiscard]] Json frame_json(const Studio& studio, const scenes::Camera& camera,
+[[nodiscard]] Json frame_json(const RenderContext& context, const scenes::Camera& camera,
                               const raytrace::Frame& frame, const StageTimes& times);
 // The header of its EXR file: provenance, position in the whole picture, stated error.
-[[nodiscard]] base::ExrHeader picture_header(const Studio& studio, const scenes::Camera& camera,
-                                             const Drawn& drawn);
+[[nodiscard]] base::ExrHeader picture_header(const RenderContext& context,
+                                             const scenes::Camera& camera, const Drawn& drawn);
 
 // Origin of a pixel's light: by source, with all paths, and by last bounce.
 
@@ -41,7 +41,7 @@ struct PictureWork {
 // `from`, `reflected`, `share` of the diffuse light at the pixel's centre
 // (studies/why/last_bounce.h). "others": sum of small contributions. "left_over": the remaining
 // share. frame: one pixel, with per_light.
-[[nodiscard]] Json probe_json(const Studio& studio, const scenes::Camera& camera,
+[[nodiscard]] Json probe_json(const RenderContext& context, const scenes::Camera& camera,
                               const raytrace::RenderOptions& options, const raytrace::Frame& frame);
 // Text for people from probe_json.
 [[nodiscard]] std::string probe_text(const Json& probe);

@@ -38,16 +38,16 @@ Json rays_by_light(const radiosity::SolveReport& solved) {
 
 }  // namespace
 
-Json frame_json(const Studio& studio, const scenes::Camera& camera, const raytrace::Frame& frame,
-                const StageTimes& times) {
+Json frame_json(const RenderContext& context, const scenes::Camera& camera,
+                const raytrace::Frame& frame, const StageTimes& times) {
   const raytrace::RenderReport& report = frame.report;
   const raytrace::RayCounts& rays = report.rays;
-  const radiosity::SolveReport& solved = studio.light.solution.report;
+  const radiosity::SolveReport& solved = context.light.solution.report;
   Json json = {{"camera", camera.name},
                {"columns", frame.image.width},
                {"rows", frame.image.height},
                {"seconds", times.json()},
-               {"warnings", studio.loaded.scene.warnings},
+               {"warnings", context.loaded.scene.warnings},
                {"peak_memory_mib", peak_memory_mib()},
                {"patches", solved.patches},
                {"iterations", solved.iterations},
@@ -71,16 +71,16 @@ Json frame_json(const Studio& studio, const scenes::Camera& camera, const raytra
                {"finished_share", report.finished_share},
                {"partial", report.stopped}};
   // Solution files do not store the cost by kind of light.
-  if (!studio.call.solution.empty() || studio.parts != nullptr) json["rays"].erase("direct_by");
+  if (!context.call.solution.empty() || context.parts != nullptr) json["rays"].erase("direct_by");
   return json;
 }
 
-base::ExrHeader picture_header(const Studio& studio, const scenes::Camera& camera,
+base::ExrHeader picture_header(const RenderContext& context, const scenes::Camera& camera,
                                const Drawn& drawn) {
   const raytrace::RenderOptions& options = drawn.options;
-  const Solved& light = studio.light;
+  const Solved& light = context.light;
   base::ExrHeader header = provenance_header(
-      {studio.loaded.scene, studio.call.scene.overrides, camera, options, light.solver,
+      {context.loaded.scene, context.call.scene.overrides, camera, options, light.solver,
        light.solved ? &light.solution.report : nullptr, drawn.frame.report});
   header.whole = {options.columns, options.rows, drawn.frame.window.x, drawn.frame.window.y};
   add_errors(header, drawn);
@@ -124,16 +124,17 @@ std::string pixel_text(const Json& pixel) {
   return text;
 }
 
-base::ToneMapped toned(const Studio& studio, const base::Image& image) {
-  const ToneChoice& choice = studio.call.tone;
+base::ToneMapped toned(const RenderContext& context, const base::Image& image) {
+  const ToneChoice& choice = context.call.tone;
   if (!choice.shared()) return base::tone_map(image);
-  return base::expose(image,
-                      studio.white_cd_per_m2 ? *studio.white_cd_per_m2 : white_of(choice, {&image}),
-                      choice.curve);
+  return base::expose(
+      image, context.white_cd_per_m2 ? *context.white_cd_per_m2 : white_of(choice, {&image}),
+      choice.curve);
 }
 
-void tell(const Studio& studio, const scenes::Camera& camera, const PictureFiles& files,
-          const raytrace::Frame& frame, const StageTimes& times) {
+void note_results(const RenderContext& context, const scenes::Camera& camera,
+                  const PictureFiles& files, const raytrace::Frame& frame,
+                  const StageTimes& times) {
   std::vector<std::string> written;
   for (const std::string& file : {files.output, files.png, files.cctv, files.range}) {
     if (!file.empty()) written.push_back(file);
@@ -141,15 +142,15 @@ void tell(const Studio& studio, const scenes::Camera& camera, const PictureFiles
   note(fmt::format("camera {}{}{}", camera.name, written.empty() ? "" : ": ",
                    fmt::join(written, ", ")));
   // The stages before the first picture serve all.
-  const bool first = studio.number == 0;
+  const bool first = context.number == 0;
   for (const auto& [stage, seconds] : times.stages()) {
     if (!first && stage != "render" && stage != "write") continue;
     note(fmt::format("  {:<16} {:>10}", stage, duration(seconds)));
   }
   note(fmt::format("  {:<16} {:>10}, peak memory {:.0f} MiB", "total", duration(times.total()),
                    peak_memory_mib()));
-  const radiosity::SolveReport& solved = studio.light.solution.report;
-  if (first && studio.light.solved && solved.patches > 0) {
+  const radiosity::SolveReport& solved = context.light.solution.report;
+  if (first && context.light.solved && solved.patches > 0) {
     note(fmt::format("  {} patches, {} form-factor and {} shadow rays, {} iterations to {:.1g}",
                      solved.patches, short_count(static_cast<double>(solved.form_factor_rays)),
                      short_count(static_cast<double>(solved.shadow_rays)), solved.iterations,
@@ -203,27 +204,28 @@ raytrace::RenderOptions picture_options(const RenderCall& call, const Common& co
   return options;
 }
 
-Picture take_picture(const Studio& studio, const scenes::Camera& camera, const PictureFiles& files,
-                     StageTimes times) {
-  const RenderCall& call = studio.call;
+Picture take_picture(const RenderContext& context, const scenes::Camera& camera,
+                     const PictureFiles& files, StageTimes times) {
+  const RenderCall& call = context.call;
   std::optional<CctvSetup> cctv;
-  if (!files.cctv.empty()) cctv = cctv_of_camera(studio.loaded.scene, camera, studio.common);
-  const Drawn drawn = draw_picture(studio, camera, times);
+  if (!files.cctv.empty()) cctv = cctv_of_camera(context.loaded.scene, camera, context.common);
+  const Drawn drawn = draw_picture(context, camera, times);
   const raytrace::Frame& frame = drawn.frame;
   const raytrace::RenderOptions& options = drawn.options;
   std::optional<base::ToneMapped> tone;
   std::optional<degrade::Result> screen;
   if (!files.png.empty()) {
-    tone = times.measure("tone map", [&] { return toned(studio, frame.image); });
+    tone = times.measure("tone map", [&] { return toned(context, frame.image); });
   }
   if (tone && call.photo) {
     tone->rgb = times.measure("over", [&] {
-      return lay_over(call.over, *call.photo, studio.loaded.scene, studio.query, camera, tone->rgb)
+      return lay_over(call.over, *call.photo, context.loaded.scene, context.query, camera,
+                      tone->rgb)
           .rgb;
     });
   }
   if (cctv) screen = times.measure("cctv", [&] { return run_chain(*cctv, frame.image); });
-  base::ExrHeader header = picture_header(studio, camera, drawn);
+  base::ExrHeader header = picture_header(context, camera, drawn);
   if (call.timings) add_times(header, times);
   times.measure("write", [&] {
     const HeaderTexts mark = partial_mark(header);
@@ -231,7 +233,7 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
     if (screen) write_cctv(files.cctv, *cctv, *screen, mark);
     if (!files.output.empty()) base::write_exr(files.output, frame.image, header);
   });
-  Picture picture{frame_json(studio, camera, frame, times),
+  Picture picture{frame_json(context, camera, frame, times),
                   !frame.report.stopped,
                   drawn.limit,
                   frame.report,
@@ -243,21 +245,21 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
     picture.report["png_white_cd_m2"] = tone->report.white_cd_per_m2;
   }
   const std::optional<double> wanted =
-      call.no_error ? std::nullopt : studio.loaded.scene.quality.error;
+      call.no_error ? std::nullopt : context.loaded.scene.quality.error;
   picture.report["error"] = error_json(drawn, wanted);
   if (screen) picture.report["cctv"] = cctv_json(*cctv, *screen);
   if (call.only_pixel) {
     Json& pixel = picture.report["pixel"];
-    pixel = pixel_json(studio.loaded.scene, frame);
-    if (call.probe) pixel.update(probe_json(studio, camera, options, frame));
+    pixel = pixel_json(context.loaded.scene, frame);
+    if (call.probe) pixel.update(probe_json(context, camera, options, frame));
     if (!call.json) {
       const std::string text = pixel_text(pixel);
       // The first line names the pixel, the next lines its layers.
       print(call.probe ? text.substr(0, text.find('\n') + 1) + probe_text(pixel) : text);
     }
   }
-  if (studio.common.quiet) return picture;
-  tell(studio, camera, files, frame, times);
+  if (context.common.quiet) return picture;
+  note_results(context, camera, files, frame, times);
   if (!call.no_error) {
     std::istringstream lines("  " + error_text(drawn, wanted));
     for (std::string line; std::getline(lines, line);) note(line);

@@ -246,13 +246,13 @@ void run(RenderCall call, const Common& common) {
   const Solved light = parts
                            ? parts->light(times)
                            : find_light({call, common, loaded, query, {}, Interrupt::asked}, times);
-  Studio studio{call, common, loaded, query, light};
+  RenderContext context{call, common, loaded, query, light};
   if (call.part.task == Task::Solve) return;
   if (!interrupt) interrupt.emplace();
-  if (call.part.task == Task::Share) return parts->draw_share(studio);
+  if (call.part.task == Task::Share) return parts->draw_share(context);
   if (call.part.task == Task::Merge) {
     parts->check_complete();
-    studio.parts = &*parts;
+    context.parts = &*parts;
   }
   Json reports = Json::array();
   std::vector<Picture> taken;
@@ -260,11 +260,11 @@ void run(RenderCall call, const Common& common) {
   for (std::size_t k = 0; k < pictures.size() && whole; ++k) {
     if (call.time_limit_s > 0.0) {
       const double left = call.time_limit_s - times.total();
-      studio.time_limit_s = std::max(1e-3, left / static_cast<double>(pictures.size() - k));
+      context.time_limit_s = std::max(1e-3, left / static_cast<double>(pictures.size() - k));
     }
-    studio.number = k;
-    if (k > 0) studio.white_cd_per_m2 = taken.front().white_cd_per_m2;
-    Picture picture = take_picture(studio, *pictures[k].camera, pictures[k].files, times);
+    context.number = k;
+    if (k > 0) context.white_cd_per_m2 = taken.front().white_cd_per_m2;
+    Picture picture = take_picture(context, *pictures[k].camera, pictures[k].files, times);
     times.add({{"pictures", picture.report["seconds"]["render"].get<double>()}});
     whole = picture.whole;
     if (!call.range.empty()) picture.report["range"] = ranges[k]["range"];

@@ -117,7 +117,7 @@ Json RenderParts::key_of(const Piece& piece) const {
           {"window", {window.x, window.y, window.columns, window.rows}}};
 }
 
-void RenderParts::draw_share(const Studio& studio) const {
+void RenderParts::draw_share(const RenderContext& context) const {
   std::size_t mine = 0, drawn = 0;
   for (const Piece& piece : pieces()) {
     if (piece.part != part_.number) continue;
@@ -127,7 +127,7 @@ void RenderParts::draw_share(const Studio& studio) const {
     if (!said.empty()) note("note: " + said);
     raytrace::RenderOptions options = options_[piece.camera];
     options.crop = piece.window;
-    const raytrace::Frame frame = draw_frame(studio, *cameras_[piece.camera], options);
+    const raytrace::Frame frame = draw_frame(context, *cameras_[piece.camera], options);
     if (frame.report.stopped) end_part_if_interrupted();
     store_->keep(key_of(piece), kept_frame(frame, picture_of(piece.camera)));
     ++drawn;

@@ -25,7 +25,7 @@ class RenderParts {
 
   // Renders the missing pictures of this part. Throws base::Error (Work) if interrupted; finished
   // pictures stay stored.
-  void draw_share(const Studio& studio) const;
+  void draw_share(const RenderContext& context) const;
   // Throws base::Error (Work) if a part is missing, with the command that makes it.
   void check_complete() const;
   // A camera's picture, joined from the parts.

@@ -94,22 +94,22 @@ class OpenMpi : public Ranks {
     return bytes;
   }
 
-  void gather(void* items, std::size_t bytes_each, const std::vector<std::size_t>& start) override {
+  void all_gather(void* items, std::size_t bytes_each,
+                  const std::vector<std::size_t>& start) override {
     const Division division(bytes_each, start);
     MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, items, division.counts.data(),
                    division.begins.data(), division.item, MPI_COMM_WORLD);
   }
 
-  void gather_at_first(void* items, std::size_t bytes_each,
-                       const std::vector<std::size_t>& start) override {
+  void gather(void* items, std::size_t bytes_each, const std::vector<std::size_t>& start) override {
     const Division division(bytes_each, start);
     MPI_Gatherv(number_ == 0 ? MPI_IN_PLACE : items,
                 division.counts[static_cast<std::size_t>(number_)], division.item, items,
                 division.counts.data(), division.begins.data(), division.item, 0, MPI_COMM_WORLD);
   }
 
-  void scatter_from_first(void* items, std::size_t bytes_each,
-                          const std::vector<std::size_t>& start) override {
+  void scatter(void* items, std::size_t bytes_each,
+               const std::vector<std::size_t>& start) override {
     const Division division(bytes_each, start);
     MPI_Scatterv(items, division.counts.data(), division.begins.data(), division.item,
                  number_ == 0 ? MPI_IN_PLACE : items,

@@ -22,23 +22,24 @@ void work_alone(std::size_t count, const Work& work) {
 }
 
 // All ranks, or rank 0, receive the results of the others.
-void exchange(Ranks& all, std::vector<std::size_t>& mine, const Transfer& transfer, Hears hears) {
+void exchange(Ranks& all, std::vector<std::size_t>& mine, const Transfer& transfer,
+              Receivers receivers) {
   const auto say = [&] {
     Parcel sent;
     sent.pass(mine);
     for (const std::size_t k : mine) transfer(k, sent);
     return sent.take_bytes();
   };
-  const auto hear = [&](int rank, std::string bytes) {
+  const auto take = [&](int rank, std::string bytes) {
     if (rank == all.number()) return;
     Parcel got(std::move(bytes));
     std::vector<std::size_t> theirs;
     got.pass(theirs);
     for (const std::size_t k : theirs) transfer(k, got);
   };
-  if (hears == Hears::All) return hear_all(all, say, hear);
+  if (receivers == Receivers::All) return broadcast_in_turn(all, say, take);
   if (all.number() > 0) all.send(say(), 0);
-  for (int rank = 1; all.number() == 0 && rank < all.count(); ++rank) hear(rank, all.receive(rank));
+  for (int rank = 1; all.number() == 0 && rank < all.count(); ++rank) take(rank, all.receive(rank));
   meet(all);
 }
 
@@ -50,8 +51,8 @@ RanksInForce::RanksInForce(Ranks* ranks) : before_(std::exchange(in_force, ranks
 
 RanksInForce::~RanksInForce() { in_force = before_; }
 
-void hear_all(Ranks& ranks, const std::function<std::string()>& say,
-              const std::function<void(int, std::string)>& hear) {
+void broadcast_in_turn(Ranks& ranks, const std::function<std::string()>& say,
+                       const std::function<void(int, std::string)>& take) {
   for (int rank = 0; rank < ranks.count(); ++rank) {
     std::string bytes;
     if (rank == ranks.number()) bytes = say();
@@ -59,7 +60,7 @@ void hear_all(Ranks& ranks, const std::function<std::string()>& say,
     ranks.broadcast(&size, sizeof size, rank);
     bytes.resize(size);
     ranks.broadcast(bytes.data(), size, rank);
-    hear(rank, std::move(bytes));
+    take(rank, std::move(bytes));
   }
 }
 
@@ -82,11 +83,12 @@ std::vector<std::string> swap(Ranks& ranks, std::vector<std::string> to) {
 }
 
 void meet(Ranks& ranks) {
-  hear_all(
+  broadcast_in_turn(
       ranks, [] { return std::string(); }, [](int, const std::string&) {});
 }
 
-void share_loop(std::size_t count, const Work& work, const Transfer& transfer, Hears hears) {
+void share_loop(std::size_t count, const Work& work, const Transfer& transfer,
+                Receivers receivers) {
   if (count < 2 || ranks() == nullptr) return work_alone(count, work);
   std::vector<std::uint8_t> is_mine(count);
   const auto take_all = [&](std::size_t, std::size_t) {
@@ -100,14 +102,14 @@ void share_loop(std::size_t count, const Work& work, const Transfer& transfer, H
   for (std::size_t k = 0; k < count; ++k) {
     if (is_mine[k] != 0) mine.push_back(k);
   }
-  exchange(*ranks(), mine, transfer, hears);
+  exchange(*ranks(), mine, transfer, receivers);
   ranks()->end_of_taking();
 }
 
 void share_chunks(std::size_t count, std::size_t chunk,
                   const std::function<void(std::size_t, std::size_t)>& body,
                   const std::function<void(std::size_t, std::size_t, Parcel&)>& transfer,
-                  Hears hears) {
+                  Receivers receivers) {
   const std::size_t chunks = (count + chunk - 1) / chunk;
   const auto end_of = [&](std::size_t k) { return std::min(count, (k + 1) * chunk); };
   const auto work = [&](std::size_t k) { body(k * chunk, end_of(k)); };
@@ -120,13 +122,13 @@ void share_chunks(std::size_t count, std::size_t chunk,
   work_alone(mine.size(), [&](std::size_t i) { work(mine[i]); });
   exchange(
       *ranks(), mine,
-      [&](std::size_t k, Parcel& parcel) { transfer(k * chunk, end_of(k), parcel); }, hears);
+      [&](std::size_t k, Parcel& parcel) { transfer(k * chunk, end_of(k), parcel); }, receivers);
 }
 
 bool holds_on_all_ranks(bool here) {
   bool everywhere = here;
   if (ranks() != nullptr) {
-    hear_all(
+    broadcast_in_turn(
         *ranks(), [&] { return std::string(here ? "1" : "0"); },
         [&](int, const std::string& there) { everywhere = everywhere && there == "1"; });
   }

@@ -35,15 +35,15 @@ class Ranks {
   [[nodiscard]] virtual std::string receive(int from) = 0;
   // All-gather. Before, rank r has the items [start[r], start[r + 1]), each of `bytes_each` bytes;
   // afterwards every rank has all items.
+  virtual void all_gather(void* items, std::size_t bytes_each,
+                          const std::vector<std::size_t>& start) = 0;
+  // Gather: only rank 0 gets all items. On other ranks `items` points to their own ones.
   virtual void gather(void* items, std::size_t bytes_each,
                       const std::vector<std::size_t>& start) = 0;
-  // Gather: only rank 0 gets all items. On other ranks `items` points to their own ones.
-  virtual void gather_at_first(void* items, std::size_t bytes_each,
-                               const std::vector<std::size_t>& start) = 0;
   // Scatter: rank 0 has all items. Afterwards every rank has its own ones, at the start of `items`
   // on the others.
-  virtual void scatter_from_first(void* items, std::size_t bytes_each,
-                                  const std::vector<std::size_t>& start) = 0;
+  virtual void scatter(void* items, std::size_t bytes_each,
+                       const std::vector<std::size_t>& start) = 0;
   // Number of a loop item that no rank has taken yet, from 0; any thread may call it. After the
   // last item the numbers continue.
   [[nodiscard]] virtual std::size_t take() = 0;
@@ -128,9 +128,9 @@ class Parcel {
 };
 
 // All-gather of byte strings: each rank in turn broadcasts say(), and all ranks, including the
-// sender, call hear(). A rank needs memory for one message only.
-void hear_all(Ranks& ranks, const std::function<std::string()>& say,
-              const std::function<void(int rank, std::string bytes)>& hear);
+// sender, call take(). A rank needs memory for one message only.
+void broadcast_in_turn(Ranks& ranks, const std::function<std::string()>& say,
+                       const std::function<void(int rank, std::string bytes)>& take);
 
 // All-to-all: to[r] goes to rank r. Returns the strings from all ranks for this one.
 [[nodiscard]] std::vector<std::string> swap(Ranks& ranks, std::vector<std::string> to);
@@ -139,7 +139,7 @@ void hear_all(Ranks& ranks, const std::function<std::string()>& say,
 void meet(Ranks& ranks);
 
 // Ranks that receive all results of a shared loop. The others have their own results only.
-enum class Hears { All, First };
+enum class Receivers { All, Root };
 
 // Calls work(k) for every k in [0, count) in parallel. Ranks take items dynamically; suited to
 // items of a millisecond or more. transfer(k) must pass all results of work(k): afterwards all
@@ -147,14 +147,14 @@ enum class Hears { All, First };
 // Calls within a parallel loop must have one item.
 void share_loop(std::size_t count, const std::function<void(std::size_t k)>& work,
                 const std::function<void(std::size_t k, Parcel& parcel)>& transfer,
-                Hears hears = Hears::All);
+                Receivers receivers = Receivers::All);
 
 // The same for body(begin, end) over chunks of [0, count), assigned cyclically. For cheap items.
 void share_chunks(
     std::size_t count, std::size_t chunk,
     const std::function<void(std::size_t begin, std::size_t end)>& body,
     const std::function<void(std::size_t begin, std::size_t end, Parcel& parcel)>& transfer,
-    Hears hears = Hears::All);
+    Receivers receivers = Receivers::All);
 
 // Logical AND over all ranks.
 [[nodiscard]] bool holds_on_all_ranks(bool here);

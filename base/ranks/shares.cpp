@@ -38,28 +38,28 @@ int Shares::holder(std::size_t item) const {
          1;
 }
 
-void Shares::tell_all(const std::function<void(Parcel&)>& pass) const {
+void Shares::broadcast(const std::function<void(Parcel&)>& pass) const {
   if (!divided()) return;
   Parcel said;
-  if (joins()) pass(said);
+  if (is_root()) pass(said);
   std::string bytes = said.take_bytes();
   std::uint64_t size = bytes.size();
-  tell_all(&size, 1);
+  broadcast(&size, 1);
   bytes.resize(size);
-  tell_all(bytes.data(), size);
-  if (joins()) return;
+  broadcast(bytes.data(), size);
+  if (is_root()) return;
   Parcel heard(std::move(bytes));
   pass(heard);
 }
 
-void Shares::hear(const Pass& say, const Pass& listen) const {
+void Shares::sequential_reduce(const Pass& say, const Pass& listen) const {
   if (!divided()) return;
   const auto bytes = [&] {
     Parcel parcel;
     say(parcel);
     return parcel.take_bytes();
   };
-  hear_all(*ranks(), bytes, [&](int, std::string said) {
+  broadcast_in_turn(*ranks(), bytes, [&](int, std::string said) {
     Parcel parcel(std::move(said));
     listen(parcel);
   });
@@ -67,12 +67,12 @@ void Shares::hear(const Pass& say, const Pass& listen) const {
 
 std::size_t Shares::sum(std::size_t of_own) const {
   std::size_t all = divided() ? 0 : of_own;
-  hear([&](Parcel& parcel) { parcel.pass(of_own); },
-       [&](Parcel& parcel) {
-         std::size_t found = 0;
-         parcel.pass(found);
-         all += found;
-       });
+  sequential_reduce([&](Parcel& parcel) { parcel.pass(of_own); },
+                    [&](Parcel& parcel) {
+                      std::size_t found = 0;
+                      parcel.pass(found);
+                      all += found;
+                    });
   return all;
 }
 
@@ -91,7 +91,7 @@ std::vector<double> Shares::ordered_sums(std::size_t count, std::size_t chunk, s
   if (divided() && each > 0) {
     std::vector<std::size_t> start;
     for (const std::size_t item : start_) start.push_back(chunks(item));
-    ranks()->gather(parts.data(), each * sizeof(double), start);
+    ranks()->all_gather(parts.data(), each * sizeof(double), start);
   }
   for (std::size_t k = 0; k < parts.size(); ++k) sums[k % each] += parts[k];
   return sums;
@@ -102,7 +102,7 @@ void Shares::add_up(std::vector<double>& sums, bool exact,
   if (!divided()) return add(sums);
   std::vector<double> own(sums.size(), 0.0), theirs;
   if (exact) add(own);
-  hear(
+  sequential_reduce(
       [&](Parcel& parcel) {
         if (!exact) add(sums);
         parcel.pass(exact ? own : sums);

@@ -29,42 +29,42 @@ class Shares {
   // The range of a rank. Needs divided items.
   [[nodiscard]] Range of(std::size_t rank) const { return {start_[rank], start_[rank + 1]}; }
   // Whether this rank processes results over all items: rank 0, or every rank if undivided.
-  [[nodiscard]] bool joins() const { return !divided() || ranks()->number() == 0; }
+  [[nodiscard]] bool is_root() const { return !divided() || ranks()->number() == 0; }
   // Ranks that receive such results.
-  [[nodiscard]] Hears hears() const { return divided() ? Hears::First : Hears::All; }
+  [[nodiscard]] Receivers receivers() const { return divided() ? Receivers::Root : Receivers::All; }
   // The rank that has the item. Needs divided items.
   [[nodiscard]] int holder(std::size_t item) const;
 
   // All-gather of `each` values per item; every rank has set its items.
   template <class Value>
-  void tell(Value* values, std::size_t each = 1) const {
+  void all_gather(Value* values, std::size_t each = 1) const {
     static_assert(std::is_trivially_copyable_v<Value>);
-    if (divided()) ranks()->gather(values, each * sizeof(Value), start_);
+    if (divided()) ranks()->all_gather(values, each * sizeof(Value), start_);
   }
   // Gather: only rank 0 gets all values. On other ranks `values` has their own ones.
   template <class Value>
-  void tell_first(Value* values, std::size_t each = 1) const {
+  void gather(Value* values, std::size_t each = 1) const {
     static_assert(std::is_trivially_copyable_v<Value>);
-    if (divided()) ranks()->gather_at_first(values, each * sizeof(Value), start_);
+    if (divided()) ranks()->gather(values, each * sizeof(Value), start_);
   }
   // Scatter: rank 0 has all values. Afterwards every rank has its own ones, at the start of
   // `values`.
   template <class Value>
-  void tell_own(Value* values, std::size_t each = 1) const {
+  void scatter(Value* values, std::size_t each = 1) const {
     static_assert(std::is_trivially_copyable_v<Value>);
-    if (divided()) ranks()->scatter_from_first(values, each * sizeof(Value), start_);
+    if (divided()) ranks()->scatter(values, each * sizeof(Value), start_);
   }
-  // Broadcast from the rank for which joins() is true: values, or data that `pass` serialises.
+  // Broadcast from the rank for which is_root() is true: values, or data that `pass` serialises.
   template <class Value>
-  void tell_all(Value* values, std::size_t count) const {
+  void broadcast(Value* values, std::size_t count) const {
     static_assert(std::is_trivially_copyable_v<Value>);
     if (divided()) ranks()->broadcast(values, count * sizeof(Value), 0);
   }
-  void tell_all(const std::function<void(Parcel& parcel)>& pass) const;
+  void broadcast(const std::function<void(Parcel& parcel)>& pass) const;
   // Each rank in turn broadcasts its data: it calls say() after it has received those of lower
   // ranks. All ranks, including the sender, call listen(). Does nothing if undivided.
   using Pass = std::function<void(Parcel& parcel)>;
-  void hear(const Pass& say, const Pass& listen) const;
+  void sequential_reduce(const Pass& say, const Pass& listen) const;
   // Sum over all ranks.
   [[nodiscard]] std::size_t sum(std::size_t of_own) const;
   // `each` sums over all items. Chunks are added in order, which gives bitwise equal results for

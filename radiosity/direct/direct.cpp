@@ -181,8 +181,8 @@ class DirectStage {
         patches_(patches),
         factors_(factors),
         own_(factors.shares.own(patches.count())),
-        landing_{factors.shares.joins() ? open_areas(factors.open, patches.area_m2)
-                                        : std::vector<double>(),
+        landing_{factors.shares.is_root() ? open_areas(factors.open, patches.area_m2)
+                                          : std::vector<double>(),
                  factors.kept_direct},
         options_(options),
         light_(light) {
@@ -195,7 +195,7 @@ class DirectStage {
   void add(const Source& source, SourceFlux flux, const Emit& emit) {
     Sampled sampled = sample({&source, 1});
     Rgb scale(0.0);
-    if (factors_.shares.joins()) {
+    if (factors_.shares.is_root()) {
       find_shares(query_, {scene_, query_, patches_, factors_.open}, emit, source.key,
                   options_.flux_rays, options_.seed, flux);
       light_.shadow_rays += static_cast<std::uint64_t>(options_.flux_rays);
@@ -205,7 +205,7 @@ class DirectStage {
       flux.landed_lm = scale * landed;
       light_.sources.push_back(std::move(flux));
     }
-    factors_.shares.tell_all(&scale, 1);
+    factors_.shares.broadcast(&scale, 1);
     store(std::move(sampled), {&source, 1}, scale);
   }
 
@@ -220,12 +220,12 @@ class DirectStage {
  private:
   [[nodiscard]] Sampled sample(std::span<const Source> sources) const {
     return sample_patches(query_, patches_, factors_.open, sources, options_.seed,
-                          light_.shadow_rays, factors_.shares.hears());
+                          light_.shadow_rays, factors_.shares.receivers());
   }
 
   // Stores the samples that the first rank has.
   void store(Sampled sampled, std::span<const Source> sources, const Rgb& scale) {
-    factors_.shares.tell_own(sampled.illuminance_lx.data(), sources.size());
+    factors_.shares.scatter(sampled.illuminance_lx.data(), sources.size());
     for (std::size_t row = 0; row < own_.end - own_.begin; ++row) {
       for (std::size_t s = 0; s < sources.size(); ++s) {
         add(row, sources[s].group, scale * sampled.illuminance_lx[row * sources.size() + s]);

@@ -124,7 +124,7 @@ void take_samples(const Source& source, std::span<const scenes::FlatMirror> mirr
 
 Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, const OpenParts& open,
                        std::span<const Source> sources, std::uint64_t seed, std::uint64_t& rays,
-                       base::Hears hears) {
+                       base::Receivers receivers) {
   const std::size_t each = sources.size();
   const std::span<const scenes::FlatMirror> mirrors = query.specular_paths().mirrors();
   Sampled sampled{std::vector<Rgb>(patches.count() * each, Rgb(0.0)),
@@ -183,7 +183,7 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
         parcel.pass_range(&sampled.variance[begin * each], (end - begin) * each);
         parcel.pass(chunk_rays[begin / chunk]);
       },
-      hears);
+      receivers);
   for (const std::uint64_t count : chunk_rays) rays += count;
   return sampled;
 }

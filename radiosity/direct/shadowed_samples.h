@@ -57,10 +57,10 @@ void take_samples(const Source& source, std::span<const scenes::FlatMirror> mirr
 // Owen-Sobol points in four dimensions (on the patch, on the source), keyed by patch and first
 // source. Covered points are skipped for the next of the sequence; a completely covered patch gets
 // 0. Adds the number of rays to `rays`. sources: several only if all are in the sky, with equal
-// numbers of points. hears: the rank that gets all results.
+// numbers of points. receivers: the rank that gets all results.
 [[nodiscard]] Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches,
                                      const OpenParts& open, std::span<const Source> sources,
                                      std::uint64_t seed, std::uint64_t& rays,
-                                     base::Hears hears = base::Hears::All);
+                                     base::Receivers receivers = base::Receivers::All);
 
 }  // namespace earthshine::radiosity

@@ -22,8 +22,8 @@ void lose_hits_on_covered(FormFactors& factors) {
       factors.hits[e] = 0.0F;
     }
   }
-  factors.shares.tell(factors.black.data());
-  factors.shares.tell(factors.lost.data());
+  factors.shares.all_gather(factors.black.data());
+  factors.shares.all_gather(factors.lost.data());
 }
 
 CoveredPatches::CoveredPatches(const Patches& patches, const OpenParts& open) {

@@ -31,7 +31,7 @@ std::unique_ptr<Lanes[]> packed(const FormFactors& factors, std::span<const doub
       }
     }
   });
-  factors.shares.tell(z.get(), blocks);
+  factors.shares.all_gather(z.get(), blocks);
   return z;
 }
 

@@ -25,14 +25,14 @@ std::vector<double> sums_over_rows(const FormFactors& factors, std::size_t each,
 
 // Maximum of each value over the ranks.
 inline void keep_largest(const base::Shares& shares, std::vector<double>& values) {
-  shares.hear([&](base::Parcel& parcel) { parcel.pass(values); },
-              [&](base::Parcel& parcel) {
-                std::vector<double> theirs;
-                parcel.pass(theirs);
-                for (std::size_t k = 0; k < values.size(); ++k) {
-                  values[k] = std::max(values[k], theirs[k]);
-                }
-              });
+  shares.sequential_reduce([&](base::Parcel& parcel) { parcel.pass(values); },
+                           [&](base::Parcel& parcel) {
+                             std::vector<double> theirs;
+                             parcel.pass(theirs);
+                             for (std::size_t k = 0; k < values.size(); ++k) {
+                               values[k] = std::max(values[k], theirs[k]);
+                             }
+                           });
 }
 
 inline double dot(const double* a, const double* b, std::size_t count) {

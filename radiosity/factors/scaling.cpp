@@ -66,12 +66,12 @@ std::uint32_t Scaling::most(const std::function<double(std::size_t k)>& value) c
     }
   }
   Patch of_all = f_.shares.divided() ? Patch() : own;
-  f_.shares.hear([&](base::Parcel& parcel) { parcel.pass(own); },
-                 [&](base::Parcel& parcel) {
-                   Patch theirs;
-                   parcel.pass(theirs);
-                   if (theirs.value > of_all.value) of_all = theirs;
-                 });
+  f_.shares.sequential_reduce([&](base::Parcel& parcel) { parcel.pass(own); },
+                              [&](base::Parcel& parcel) {
+                                Patch theirs;
+                                parcel.pass(theirs);
+                                if (theirs.value > of_all.value) of_all = theirs;
+                              });
   return of_all.number;
 }
 
@@ -125,7 +125,7 @@ int Scaling::newton_step(int most_passes) {
 }
 
 void Scaling::close_rows() {
-  f_.shares.tell(f_.column_scale.data());
+  f_.shares.all_gather(f_.column_scale.data());
   base::parallel_chunks(row_.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t i = own_.begin + k;
@@ -148,7 +148,7 @@ void Scaling::finish() {
   const std::size_t count = f_.count();
   std::vector<double> row(count);
   std::copy(row_.begin(), row_.end(), row.begin() + static_cast<std::ptrdiff_t>(own_.begin));
-  f_.shares.tell(row.data());
+  f_.shares.all_gather(row.data());
   const std::size_t parts = f_.sky_illuminance.size() / count;
   for (std::size_t i = 0; i < count; ++i) {
     if (i < own_.begin || i >= own_.end) f_.row_scale[i] *= row[i];

@@ -88,7 +88,7 @@ class SurfaceSearch {
   }
 
   // If ranks divide the form factors, the root rank decides, and all ranks sample.
-  [[nodiscard]] bool joins() const { return light_->shares().joins(); }
+  [[nodiscard]] bool is_root() const { return light_->shares().is_root(); }
   [[nodiscard]] bool may_cut() const { return cuts_surfaces(given_); }
   [[nodiscard]] bool may_cast() const { return !given_.form_factor_rays; }
   // Whether shadow rays alone lit all reflecting surfaces, and evenly.
@@ -146,7 +146,7 @@ class SurfaceSearch {
       last_took_ = time_gone() - begun;
       std::vector<double> variance;
       LightNoise noise;
-      if (joins()) {
+      if (is_root()) {
         variance = ray_variance(light_->patches(), samples, all, budget);
         noise = noise_of(*light_, variance, samples);
       }
@@ -165,7 +165,7 @@ class SurfaceSearch {
       if (gone + next_pass * (gone - pass_begun) > 1.0) return stop(Limit::Time);
       pass_begun = gone;
       rounds_->set_mean(found.mean);
-      if (joins()) choice.see(light_->patches(), samples, all, noise.all());
+      if (is_root()) choice.see(light_->patches(), samples, all, noise.all());
       if (may_cast()) light_->correct(samples, all, budget);
       if (found.standard_error > most_standard_error * squared(wanted_.error))
         points_wanted_ *= 2.0;
@@ -179,8 +179,8 @@ class SurfaceSearch {
       if (idle >= most_idle && pass > 4) return stop(why_no_more());
       before = error;
       const double target = noise_share * squared(aim * wanted_.error * rounds_->mean());
-      if (joins()) budget = next_budget(variance, parent, target);
-      light_->shares().tell_all([&](base::Parcel& parcel) { parcel.pass(budget); });
+      if (is_root()) budget = next_budget(variance, parent, target);
+      light_->shares().broadcast([&](base::Parcel& parcel) { parcel.pass(budget); });
     }
   }
 

@@ -55,29 +55,29 @@ SurfaceSamples SurfaceRounds::sample(std::span<const std::uint32_t> which,
   const base::StopInForce stop(wanted_.stop);
   SurfaceSamples samples =
       sampler_.sample(light_.light(), which, budget, ++pass_, mean_, light_.bodies(),
-                      progress_ ? progress_(name) : Progress(), of, light_.shares().hears());
+                      progress_ ? progress_(name) : Progress(), of, light_.shares().receivers());
   rays_ += samples.rays;
   return samples;
 }
 
 std::vector<radiosity::Cut> SurfaceRounds::worst(const SurfaceRefiner& choice, const How& how) {
   std::vector<radiosity::Cut> cuts;
-  if (joins()) {
+  if (is_root()) {
     cuts = choice.worst(light_.patches(),
                         {how.enough, how.share, std::min(most_, std::max(first_, how.limit))});
   }
-  light_.shares().tell_all([&](base::Parcel& parcel) { parcel.pass(cuts); });
+  light_.shares().broadcast([&](base::Parcel& parcel) { parcel.pass(cuts); });
   return cuts;
 }
 
 void SurfaceRounds::update(SurfaceRefiner& choice, std::span<const std::uint32_t> which,
                            const How& how) {
   std::vector<SampleBudget> budget;
-  if (joins()) budget = how.budget(which);
-  light_.shares().tell_all([&](base::Parcel& parcel) { parcel.pass(budget); });
+  if (is_root()) budget = how.budget(which);
+  light_.shares().broadcast([&](base::Parcel& parcel) { parcel.pass(budget); });
   const std::string stage = fmt::format("{}, {} patches", how.name, light_.patches().count());
   const SurfaceSamples samples = sample(which, budget, stage, SamplesOf::Light);
-  if (joins()) {
+  if (is_root()) {
     std::vector<double> noise;
     if (budget.front().rays > 0) {
       noise =
@@ -92,8 +92,8 @@ bool SurfaceRounds::cut(SurfaceRefiner& choice, const How& how, std::vector<std:
                         SurfaceRefiner* also) {
   const std::size_t before = light_.patches().count();
   const auto told_left = [&] {
-    double left = joins() ? choice.total() : 0.0;
-    light_.shares().tell_all(&left, 1);
+    double left = is_root() ? choice.total() : 0.0;
+    light_.shares().broadcast(&left, 1);
     return left;
   };
   double last_left = told_left();

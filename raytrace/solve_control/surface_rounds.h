@@ -55,7 +55,7 @@ class SurfaceRounds {
   };
 
   // If ranks divide the form factors, the root rank decides, and all ranks sample.
-  [[nodiscard]] bool joins() const { return light_.shares().joins(); }
+  [[nodiscard]] bool is_root() const { return light_.shares().is_root(); }
   // Elapsed share of the time limit; 0 without a limit.
   [[nodiscard]] double time_gone() const;
   [[nodiscard]] std::vector<radiosity::Cut> worst(const SurfaceRefiner& choice, const How& how);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "radiosity/tell_solution.h"
+#include "radiosity/broadcast_solution.h"
 #include "raytrace/surfaces/surface_light.h"
 
 namespace earthshine::raytrace {
@@ -121,9 +121,9 @@ LightOnSurfaces::Finished LightOnSurfaces::finished() const {
   solution.columns = light_.columns();
   solution.report = light_.solution.report;
   solution.report.patches = light_.count();
-  if (factors_.shares.joins()) finished.lacks = fill(solution);
-  factors_.shares.tell_all(&finished.lacks, 1);
-  radiosity::tell_solution(factors_.shares, solution);
+  if (factors_.shares.is_root()) finished.lacks = fill(solution);
+  factors_.shares.broadcast(&finished.lacks, 1);
+  radiosity::broadcast_solution(factors_.shares, solution);
   return finished;
 }
 

@@ -202,12 +202,12 @@ ResidualError residual_error(const LightOnSurfaces& light, const SurfaceSamples&
                              const LightNoise& noise, const radiosity::PatchAlbedos& reflectances,
                              double solver_error) {
   ResidualError error;
-  if (light.shares().joins()) {
+  if (light.shares().is_root()) {
     error = error_of_all(light, samples, noise, reflectances, solver_error);
   } else {
     (void)light.brought({}, residual_columns);
   }
-  light.shares().tell_all(&error, 1);
+  light.shares().broadcast(&error, 1);
   return error;
 }
 

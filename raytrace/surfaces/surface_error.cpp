@@ -55,10 +55,11 @@ SurfaceError surface_error(const scenes::World& scene, const radiosity::Solution
   std::iota(all.begin(), all.end(), 0U);
   const std::vector<SampleBudget> budget = even_budget(light, points);
   const SurfaceSampler sampler(scene, solver.seed);
-  const SurfaceSamples samples = sampler.sample(light.light(), all, budget, 1, mean, light.bodies(),
-                                                {}, SamplesOf::Residual, light.shares().hears());
+  const SurfaceSamples samples =
+      sampler.sample(light.light(), all, budget, 1, mean, light.bodies(), {}, SamplesOf::Residual,
+                     light.shares().receivers());
   LightNoise noise;
-  if (light.shares().joins()) {
+  if (light.shares().is_root()) {
     noise = noise_of(light, ray_variance(light.patches(), samples, all, budget), samples);
   }
   const ResidualError found =

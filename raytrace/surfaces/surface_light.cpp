@@ -72,7 +72,7 @@ LightOnSurfaces::LightOnSurfaces(const scenes::World& scene, radiosity::Solution
   base::release(coarse.indirect_radiosity);
   light_.solution = std::move(coarse);
   sum_up();
-  if (!factors_.shares.joins()) keep_what_samples_read();
+  if (!factors_.shares.is_root()) keep_what_samples_read();
 }
 
 void LightOnSurfaces::keep_what_samples_read() {
@@ -122,8 +122,8 @@ double LightOnSurfaces::mean_radiosity() const {
 }
 
 double LightOnSurfaces::told_mean() const {
-  double mean = factors_.shares.joins() ? mean_radiosity() : 0.0;
-  factors_.shares.tell_all(&mean, 1);
+  double mean = factors_.shares.is_root() ? mean_radiosity() : 0.0;
+  factors_.shares.broadcast(&mean, 1);
   return mean;
 }
 
@@ -131,17 +131,17 @@ std::vector<double> LightOnSurfaces::brought(std::vector<double> residual,
                                              std::size_t columns) const {
   const base::Shares& shares = factors_.shares;
   const auto [begin, end] = shares.own(factors_.count());
-  std::vector<double> source(shares.joins() ? 0 : (end - begin) * columns);
-  if (shares.joins()) source = means_of(residual, columns);
+  std::vector<double> source(shares.is_root() ? 0 : (end - begin) * columns);
+  if (shares.is_root()) source = means_of(residual, columns);
   base::release(residual);
-  shares.tell_own(source.data(), columns);
+  shares.scatter(source.data(), columns);
   source.resize((end - begin) * columns);
   source.shrink_to_fit();
   std::vector<double> found = radiosity::solve_linear(factors_, std::move(source),
                                                       coarse_reflectance_, columns, of_the_error)
                                   .fx;
-  if (shares.joins()) found.resize(factors_.count() * columns);
-  shares.tell_first(found.data(), columns);
+  if (shares.is_root()) found.resize(factors_.count() * columns);
+  shares.gather(found.data(), columns);
   return found;
 }
 
@@ -170,11 +170,11 @@ void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std
   const std::size_t columns = light_.columns();
   const bool gathers =
       std::any_of(budget.begin(), budget.end(), [](const SampleBudget& e) { return e.rays > 0; });
-  const bool joins = factors_.shares.joins();
+  const bool is_root = factors_.shares.is_root();
   std::vector<double> more, residual;
   if (gathers) {
-    if (joins) residual.assign(light_.count() * columns, 0.0);
-    for (const std::uint32_t i : joins ? which : std::span<const std::uint32_t>()) {
+    if (is_root) residual.assign(light_.count() * columns, 0.0);
+    for (const std::uint32_t i : is_root ? which : std::span<const std::uint32_t>()) {
       if (samples.residual[i].taken == 0) continue;
       const Rgb rho = reflectances_.of(patches(), i);
       for (std::size_t k = i * columns; k < (i + 1) * columns; ++k) {
@@ -185,10 +185,10 @@ void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std
     }
     more = brought(std::move(residual), columns);
   }
-  if (joins && gathers)
+  if (is_root && gathers)
     take_gathered(samples, SharedSamples(light_, reflectances_, samples, which, budget, coarse_),
                   which, more);
-  for (std::size_t n = 0; joins && n < which.size(); ++n) {
+  for (std::size_t n = 0; is_root && n < which.size(); ++n) {
     const std::uint32_t i = which[n];
     const PatchResidual& seen = samples.residual[i];
     if (base::max_component(reflectances_.of(patches(), i)) <= 0.0) continue;  // not sampled
@@ -207,13 +207,13 @@ void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std
     if (seen.wants_shadow_rays) light_.shadow_rays[i] = more_shadow_rays;
     if (!light_.open_share.empty()) light_.open_share[i] = double(seen.open);
   }
-  if (joins) sum_up();
+  if (is_root) sum_up();
   for (std::vector<float>* const values :
        {&light_.lamps, &light_.gathered, &light_.solution.radiosity}) {
-    factors_.shares.tell_all(values->data(), values->size());
+    factors_.shares.broadcast(values->data(), values->size());
   }
-  factors_.shares.tell_all(light_.open_share.data(), light_.open_share.size());
-  factors_.shares.tell_all(light_.shadow_rays.data(), light_.shadow_rays.size());
+  factors_.shares.broadcast(light_.open_share.data(), light_.open_share.size());
+  factors_.shares.broadcast(light_.shadow_rays.data(), light_.shadow_rays.size());
 }
 
 // more: indirect correction by bounces, per coarse patch and column.
@@ -265,15 +265,15 @@ std::vector<std::uint32_t> LightOnSurfaces::cut(const std::vector<radiosity::Cut
   finer.sky.resize(count * parts);
   finer.open_share.resize(light_.open_share.empty() ? 0 : count);
   finer.shadow_rays.resize(count);
-  const bool joins = factors_.shares.joins();
-  const std::size_t kept = joins ? count : 0;
+  const bool is_root = factors_.shares.is_root();
+  const std::size_t kept = is_root ? count : 0;
   std::vector<std::uint32_t> coarse(kept);
   std::vector<double> points(kept), rays(kept), escape(kept), lost(kept);
   std::vector<Rgb> between(groups);
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t parent = made.parent[i];
     const bool whole = made.patches.area_m2[i] >= patches().area_m2[parent];
-    if (joins) {
+    if (is_root) {
       coarse[i] = coarse_[parent];
       points[i] = whole ? lamp_rays_[parent] : 0.0;
       rays[i] = (whole ? 1.0 : double(kept_rays[parent])) * gather_rays_[parent];
@@ -302,9 +302,9 @@ std::vector<std::uint32_t> LightOnSurfaces::cut(const std::vector<radiosity::Cut
   gather_rays_ = std::move(rays);
   escape_ = std::move(escape);
   lost_ = std::move(lost);
-  if (joins) sum_up();
+  if (is_root) sum_up();
   light_.solution.radiosity.resize(count * columns);
-  factors_.shares.tell_all(light_.solution.radiosity.data(), count * columns);
+  factors_.shares.broadcast(light_.solution.radiosity.data(), count * columns);
   return std::move(made.parent);
 }
 

@@ -111,7 +111,7 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
                                       std::span<const SampleBudget> budget, std::uint32_t pass,
                                       double mean, const radiosity::ClosedBodies* bodies,
                                       const Progress& progress, SamplesOf of,
-                                      base::Hears hears) const {
+                                      base::Receivers receivers) const {
   const radiosity::Patches& patches = light.solution.patches;
   const std::size_t groups = light.columns() / 3, columns = light.columns();
   const std::size_t sky_parts =
@@ -131,8 +131,8 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
 
   const std::size_t aims_key = 4 + 3 * sources_.size();  // after the keys of shadow rays in weigh()
   const bool of_light = of == SamplesOf::Light;
-  const bool joins =
-      hears == base::Hears::All || base::ranks() == nullptr || base::ranks()->number() == 0;
+  const bool is_root =
+      receivers == base::Receivers::All || base::ranks() == nullptr || base::ranks()->number() == 0;
   SurfaceSamples found;
   if (of_light) {
     found.lamps.assign(light.count() * columns, 0.0);
@@ -141,7 +141,7 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
     found.escaped.assign(light.count(), 0.0);
     found.lost.assign(light.count(), 0.0);
   }
-  if (joins) found.residual.resize(light.count());
+  if (is_root) found.residual.resize(light.count());
   found.rays = sight.rays();
   constexpr std::size_t chunk = 32;  // patches; told_after is a multiple of it
   std::vector<std::uint64_t> rays_of((which.size() + chunk - 1) / chunk, 0);
@@ -279,12 +279,13 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
                      [&](std::size_t k, base::Parcel& parcel) {
                        transfer(begin_of(k), begin_of(k + 1), parcel);
                      },
-                     hears);
-    for (std::size_t k = 0; joins && k < count; ++k) found.residual[which[first + k]] = seen[k];
+                     receivers);
+    for (std::size_t k = 0; is_root && k < count; ++k) found.residual[which[first + k]] = seen[k];
     if (progress) progress(first + count, which.size());
   }
   for (const std::uint64_t rays : rays_of) found.rays += rays;
-  if (hears == base::Hears::First) base::ranks()->broadcast(&found.rays, sizeof found.rays, 0);
+  if (receivers == base::Receivers::Root)
+    base::ranks()->broadcast(&found.rays, sizeof found.rays, 0);
   return found;
 }
 

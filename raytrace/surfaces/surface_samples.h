@@ -99,7 +99,7 @@ class SurfaceSampler {
 
   // which: patches; budget: for each of them. Entries of other patches stay empty. pass: number of
   // the independent set of samples. mean: of the radiosity, for error_weight(). `bodies` may cover
-  // points; null: none is covered. progress: gets the number of finished patches. hears: the rank
+  // points; null: none is covered. progress: gets the number of finished patches. receivers: the rank
   // that gets the result; all ranks get `rays`. First: only with ranks.
   [[nodiscard]] SurfaceSamples sample(const SurfaceLight& light,
                                       std::span<const std::uint32_t> which,
@@ -107,7 +107,7 @@ class SurfaceSampler {
                                       double mean, const radiosity::ClosedBodies* bodies,
                                       const Progress& progress = {},
                                       SamplesOf of = SamplesOf::Light,
-                                      base::Hears hears = base::Hears::All) const;
+                                      base::Receivers receivers = base::Receivers::All) const;
 
   [[nodiscard]] const radiosity::PatchAlbedos& reflectances() const { return reflectances_; }
   [[nodiscard]] const std::vector<bool>& is_explicit() const { return is_explicit_; }

@@ -10,7 +10,7 @@
 #include "base/parallel.h"
 #include "raytrace/light/distributed_area.h"
 #include "scenes/light/lamp_light.h"
-#include "studies/compare/yardstick.h"
+#include "studies/compare/target_differences.h"
 
 namespace earthshine::studies {
 namespace {

@@ -22,9 +22,9 @@ class Silent : public base::Ranks {
   void broadcast(void*, std::size_t, int) override { FAIL(); }
   void send(std::string, int) override { FAIL(); }
   [[nodiscard]] std::string receive(int) override { throw std::logic_error("asked"); }
+  void all_gather(void*, std::size_t, const std::vector<std::size_t>&) override { FAIL(); }
   void gather(void*, std::size_t, const std::vector<std::size_t>&) override { FAIL(); }
-  void gather_at_first(void*, std::size_t, const std::vector<std::size_t>&) override { FAIL(); }
-  void scatter_from_first(void*, std::size_t, const std::vector<std::size_t>&) override { FAIL(); }
+  void scatter(void*, std::size_t, const std::vector<std::size_t>&) override { FAIL(); }
   [[nodiscard]] std::size_t take() override { throw std::logic_error("asked"); }
   void end_of_taking() override { FAIL(); }
   [[noreturn]] void end_all(int) override { throw std::logic_error("ended"); }

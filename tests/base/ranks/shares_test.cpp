@@ -78,7 +78,8 @@ class OneOfSome : public Silent {
  public:
   using Silent::Silent;
   // Checks this rank's chunks, then computes the chunks of the other ranks.
-  void gather(void* items, std::size_t bytes_each, const std::vector<std::size_t>& start) override {
+  void all_gather(void* items, std::size_t bytes_each,
+                  const std::vector<std::size_t>& start) override {
     ASSERT_EQ(bytes_each, 2 * sizeof(double));
     auto* const parts = static_cast<double*>(items);
     const auto mine = static_cast<std::size_t>(number());

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "studies/compare/yardstick.h"
+#include "studies/compare/target_differences.h"
 
 namespace earthshine::studies {
 namespace {

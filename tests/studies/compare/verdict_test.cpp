@@ -2,7 +2,7 @@
 // Verdict sentences for difficult cases.
 #include <gtest/gtest.h>
 
-#include "studies/compare/yardstick.h"
+#include "studies/compare/target_differences.h"
 #include "tests/studies/plates.h"
 
 namespace earthshine::studies {

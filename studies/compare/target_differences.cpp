@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "studies/compare/yardstick.h"
+#include "studies/compare/target_differences.h"
 
 #include <algorithm>
 #include <cmath>

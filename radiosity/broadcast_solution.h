@@ -13,6 +13,6 @@ void tell_report(const base::Shares& shares, SolveReport& report);
 
 // Also broadcasts the four values of each patch, if only the first rank has them. The others have
 // the patches and the rest of the report.
-void tell_solution(const base::Shares& shares, Solution& solution);
+void broadcast_solution(const base::Shares& shares, Solution& solution);
 
 }  // namespace earthshine::radiosity

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "radiosity/tell_solution.h"
+#include "radiosity/broadcast_solution.h"
 
 #include <string>
 #include <vector>
@@ -32,7 +32,7 @@ void pass(base::Parcel& parcel, std::vector<Line>& lines) {
 }  // namespace
 
 void tell_report(const base::Shares& shares, SolveReport& report) {
-  shares.tell_all([&report](base::Parcel& parcel) {
+  shares.broadcast([&report](base::Parcel& parcel) {
     parcel.pass_all(report.shadow_rays, report.sources_cost, report.iterations, report.residual,
                     report.solver_error);
     pass(parcel, report.groups);
@@ -41,11 +41,11 @@ void tell_report(const base::Shares& shares, SolveReport& report) {
   });
 }
 
-void tell_solution(const base::Shares& shares, Solution& solution) {
+void broadcast_solution(const base::Shares& shares, Solution& solution) {
   for (std::vector<float>* const values : {&solution.radiosity, &solution.indirect_radiosity,
                                            &solution.direct_lx, &solution.indirect_lx}) {
     values->resize(solution.patches.count() * solution.columns);
-    shares.tell_all(values->data(), values->size());
+    shares.broadcast(values->data(), values->size());
   }
   tell_report(shares, solution.report);
 }
