@@ -31,12 +31,12 @@ const std::array<Group, 7>& groups() {
         {"error", "no-error", "time-limit", "indirect", "no-caustics", "distributed-lights",
          "distributed-over", "all-effects", "paths", "noise", "raw", "reference-factor", "method",
          "off"}},
-       {"Parallel runs", {"part", "wait", "ranks"}},
+       {"Parallel runs", {"part", "wait", "ranks", "images"}},
        {"Options", {}},
        {"Output",
         {"output", "png", "range", "report", "aov", "per-light", "timings", "json", "csv", "glb",
          "twin", "target-resels", "stages", "list", "describe", "plain", "dry-run", "exposure",
-         "curve"}},
+         "curve", "layers"}},
        {"General", {"threads", "seed", "max-memory", "quiet", "help", "version"}}}};
   return all;
 }

@@ -30,7 +30,7 @@ const std::vector<std::vector<std::string>>& synonyms() {
       {"scale", "unit", "units", "size"},
       {"time", "timeout", "limit", "budget", "seconds"},
       {"camera", "view", "viewpoint", "eye"},
-      {"quiet", "silent", "verbose"},
+      {"quiet", "silent"},
       {"light", "lamp", "lights", "lamps"},
       {"object", "body", "part", "group"},
   };
@@ -53,8 +53,21 @@ std::string_view bare(std::string_view word) {
   return word;
 }
 
-// A slip of the keys is one edit in a short word and two in a longer one.
-std::size_t most_edits(std::size_t length) { return length < 4 ? 1 : length < 10 ? 2 : 3; }
+// The list that has the word, or one of its parts ("light_power"); nullptr: none has.
+const std::vector<std::string>* meaning_of(std::string_view word) {
+  for (const bool whole : {true, false}) {
+    for (const std::vector<std::string>& alike : synonyms()) {
+      const auto means = [&](const std::string& one) {
+        return whole ? edit_distance(word, one) == 0 : has_word(word, one);
+      };
+      if (std::ranges::any_of(alike, means)) return &alike;
+    }
+  }
+  return nullptr;
+}
+
+// A slip of the keys is one edit in a short word and two or three in a longer one.
+std::size_t most_edits(std::size_t length) { return length < 6 ? 1 : length < 10 ? 2 : 3; }
 
 }  // namespace
 
@@ -77,6 +90,27 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
   const std::string_view wrong = bare(word);
+  const auto first = [&](const auto& fits) -> std::string {
+    const auto found = std::ranges::find_if(candidates, fits);
+    return found != candidates.end() ? *found : std::string();
+  };
+  const auto has = [&](std::string_view one) {
+    return first([&](const std::string& candidate) { return has_word(bare(candidate), one); });
+  };
+  // A word of the table is meant as it is: spelling would mislead.
+  const std::vector<std::string>* const alike = meaning_of(wrong);
+  if (alike != nullptr) {
+    for (const std::string& one : *alike) {
+      std::string found = first(
+          [&](const std::string& candidate) { return edit_distance(bare(candidate), one) == 0; });
+      if (!found.empty()) return found;
+    }
+    if (std::string found = has(wrong); !found.empty()) return found;
+    for (const std::string& one : *alike) {
+      if (std::string found = has(one); !found.empty()) return found;
+    }
+    return {};
+  }
   std::size_t best = most_edits(wrong.size()) + 1;
   std::string found;
   for (const std::string& candidate : candidates) {
@@ -90,24 +124,10 @@ std::string nearest_word(std::string_view word, std::span<const std::string> can
     }
   }
   if (!found.empty()) return found;
-  for (const std::string& candidate : candidates) {
-    if (wrong.size() > 2 && bare(candidate).starts_with(wrong)) return candidate;
-  }
-  for (const std::string& candidate : candidates) {
-    if (has_word(bare(candidate), wrong)) return candidate;
-  }
-  for (const std::vector<std::string>& alike : synonyms()) {
-    if (std::none_of(alike.begin(), alike.end(),
-                     [&](const std::string& one) { return has_word(wrong, one); })) {
-      continue;
-    }
-    for (const std::string& one : alike) {
-      for (const std::string& candidate : candidates) {
-        if (has_word(bare(candidate), one)) return candidate;
-      }
-    }
-  }
-  return {};
+  found = first([&](const std::string& candidate) {
+    return wrong.size() > 2 && bare(candidate).starts_with(wrong);
+  });
+  return found.empty() ? has(wrong) : found;
 }
 
 }  // namespace earthshine::base

@@ -50,6 +50,10 @@ class Study : AccuracyStages {
     return std::move(result_);
   }
 
+  // Seconds of that work that the time limit allows.
+  [[nodiscard]] double in_time(double seconds) const {
+    return std::min(seconds, std::max(0.0, time_left()));
+  }
   [[nodiscard]] double time_left() const {
     if (task_.call.time_limit_s <= 0.0) return std::numeric_limits<double>::infinity();
     return task_.call.time_limit_s - parts_.seconds();
@@ -69,8 +73,10 @@ class Study : AccuracyStages {
       }
       const double rest = expected * static_cast<double>(further.size() - k);
       // About as long as the references take the settings that are measured by them.
-      task_.common.progress->expect_rest(rest + reference_share * (parts_.seconds() + rest));
-      parts_.tell(fmt::format("reference, {} of {} rounds", k + 2, further.size() + 1), rest, "");
+      task_.common.progress->expect_rest(
+          in_time(rest + reference_share * (parts_.seconds() + rest)));
+      parts_.tell(fmt::format("reference, {} of {} rounds", k + 2, further.size() + 1),
+                  in_time(rest), "");
       trace_round(references, static_cast<int>(k) + 1, further[k]);
     }
     take_truth(references.front());
@@ -147,8 +153,8 @@ class Study : AccuracyStages {
           left += parts_.wall_per_cpu() * studies::expected_seconds(ladder[j], taken);
         }
       }
-      task_.common.progress->expect_rest(left);
-      parts_.tell(fmt::format("{} of {}: {}", k + 1, ladder.size(), step.name()), left,
+      task_.common.progress->expect_rest(in_time(left));
+      parts_.tell(fmt::format("{} of {}: {}", k + 1, ladder.size(), step.name()), in_time(left),
                   fmt::format("{} in {}", scenes::percent(result_.points.back().error.error),
                               duration(cost.wall_seconds)));
     }

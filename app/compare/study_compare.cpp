@@ -128,7 +128,6 @@ raytrace::StageListener progress_of(const CompareCall& call, const Common& commo
     stages.emplace_back("picture");
   }
   for (const std::string& stage : stages) progress->expect(units(stage).first, units(stage).second);
-  if (call.time_limit_s > 0.0) progress->end_within(call.time_limit_s);
   return [=](const std::string& stage) -> raytrace::Progress {
     const auto [work, amount] = units(stage);
     return progress->begin(stage, work, amount);
@@ -205,7 +204,7 @@ Json plan_of(const CompareCall& call, const Common& common, const LoadedScene& l
       {"scene", call.scene.path},   {"camera", camera.name},
       {"columns", options.columns}, {"rows", options.rows},
       {"error", options.error},     {"solve_seconds", solve},
-      {"methods", listed},          {"seconds", limit > 0.0 ? std::min(limit, seconds) : seconds}};
+      {"methods", listed},          {"seconds", limit > 0.0 ? std::max(solve, std::min(limit, seconds)) : seconds}};
 }
 
 std::string plan_text(const Json& plan) {
@@ -289,8 +288,8 @@ Command add_study_compare(CLI::App& study) {
                    "Also with the Earth's lights over this [[area]] of the scene, not its disc")
       ->type_name("NAME");
   add_time_limit(*parser, call->time_limit_s,
-                 "End pictures so that the whole takes about this long; results then differ "
-                 "between runs");
+                 "End pictures so that the whole takes about this long, or as long as the solves "
+                 "take; results then differ between runs");
   parser->add_flag("--dry-run", call->dry_run, "Only print what would run and how long it takes");
   return {parser, [call](const Common& common) { run(*call, common); }};
 }

@@ -85,7 +85,7 @@ void run(const ConsoleCall& call, const Common& common) {
   const std::string html = page.html();
   base::write_text(call.output, html);
   const double megabytes = static_cast<double>(html.size()) / 1e6;
-  if (html.size() > most_page_bytes) {
+  if (html.size() > most_page_bytes && !common.quiet) {
     note(
         fmt::format("note: {} has {:.1f} MB, more than 30: browsers open it slowly. A smaller "
                     "--size, fewer --camera or --positions make it smaller",
@@ -96,6 +96,9 @@ void run(const ConsoleCall& call, const Common& common) {
   if (call.json) {
     print(dump({{"output", call.output}, {"bytes", html.size()}, {"cameras", cameras}}));
   }
+  std::vector<std::string> skipped;
+  for (const scenes::Camera* camera : part->skipped) skipped.push_back(camera->name);
+  check_skipped(skipped);
 }
 
 }  // namespace
@@ -113,7 +116,6 @@ Command add_console(CLI::App& program) {
                    "Places along the orbit, evenly spaced (default: the scene's own)");
   parser
       ->add_option("--layers", call->layers, "Folder for each camera's layers as EXR, for relight")
-      ->group("What is written")
       ->type_name("DIR");
   parser->add_flag("--json", call->json, "Report as JSON on standard output");
   return {parser, [call](const Common& common) { run(*call, common); }};

@@ -106,6 +106,7 @@ void ConsolePage::add(const ConsoleView& view) {
       view.camera->cctv ? *view.camera->cctv : cctv_of_camera(part_.loaded.scene, camera, common_);
   data_["cameras"].push_back(
       {{"name", camera.name},
+       {"file", file_stem(part_.loaded.scene, camera)},
        {"columns", view.camera->columns},
        {"rows", view.camera->rows},
        {"fov_deg", camera.fov_deg},

@@ -131,6 +131,7 @@ Command add_merge(CLI::App& program, const RunCall& run_call) {
             if (common.threads > 0) {
               arguments.insert(arguments.end(), {"--threads", std::to_string(common.threads)});
             }
+            common.progress->end();  // the call has a line of its own
             run_call(arguments);
           }};
 }

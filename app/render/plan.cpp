@@ -210,9 +210,9 @@ std::string too_much_text(const Json& report) {
 
 std::string ranks_text(const Json& ranks) {
   return fmt::format(
-      "on {} rank(s), each with {} such core(s) of its own: at best {}, of them {} that no number "
-      "of ranks shortens; {:.0f} MiB in the first rank, {:.0f} MiB in each other, {:.0f} MiB "
-      "together\n",
+      "on {} rank(s) with {} core(s) each: at best {}, of which {} do not depend on the number of "
+      "ranks\nmemory: {:.0f} MiB in the first rank, {:.0f} MiB in each other rank, {:.0f} MiB in "
+      "all\n",
       ranks["count"], ranks["threads_each"], duration(ranks["seconds"].get<double>()),
       duration(ranks["unshared_seconds"].get<double>()), ranks["memory_mib_each"],
       ranks["memory_mib_others"], ranks["memory_mib_all"]);

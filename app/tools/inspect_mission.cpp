@@ -19,9 +19,9 @@ Json moment_text(const std::optional<Instant>& t) {
   return t ? Json(scenes::utc_text(*t)) : Json();
 }
 
-// From the scene's time to the last time of [time], or over one revolution, within the states.
+// Over [time], or one revolution from the scene's time, within the states.
 Json eclipses_of(const scenes::Scene& scene, const scenes::Mission& mission) {
-  const Instant start = mission.moment;
+  const Instant start = mission.has_span ? mission.time.start : mission.moment;
   const Instant stop = mission.has_span ? std::min(std::max(mission.time.stop, start),
                                                    start + longest_eclipse_span_s)
                                         : start + scenes::period_at(mission, start);

@@ -320,7 +320,9 @@ StudyParts prepare_parts(const studies::StudyFile& study, std::size_t index, con
     part->id = run == 0 ? first->id : fmt::format("{}-p{}", first->id, run);
     part->scene = index;
     part->path = first->path;
-    if (way.joints.empty()) {
+    // A scene's Moon and joints are those of its moment.
+    const bool moon_of_moment = first->loaded.scene.moon && way.moments.size() == 1;
+    if (way.joints.empty() && !moon_of_moment) {
       part->loaded = std::move(first->loaded);
     } else {
       SceneInput input = input_of(study, *first);

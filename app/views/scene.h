@@ -27,7 +27,7 @@ struct StudyCamera {
   std::optional<CctvSetup> cctv;
 };
 
-// One scene, or one pose of a scene whose joints move. Not to be moved once it is made: its parts point at each other.
+// One scene, or one pose of a scene whose joints move. Not movable: its members refer to each other.
 struct StudyPart {
   std::string id;         // "s0", "s1", ...; of a later pose of its joints "s0-p1", ...
   std::size_t scene = 0;  // its number in the study

@@ -28,7 +28,7 @@ const modelTables = (of) => {
   if (!changed && !Object.keys(of.monitor_set).length) return "";
   const settings = isPreset ? of.camera_set : modelOf(of).camera;
   const table = `[[cctv]]\nname = "console"\n${isPreset ? `preset = ${toml(modelOf(of).name)}\n` : ""}${settingsText(settings)}`;
-  const monitor = Object.keys(of.monitor_set).length ? `\n[monitor]\n${settingsText(modelOf(of).monitor)}` : "";
+  const monitor = of.model || Object.keys(of.monitor_set).length ? `\n[monitor]\n${settingsText(modelOf(of).monitor)}` : "";
   return `\n${table}${monitor}\n[camera_models]\n${toml(camera.name)} = "console"\n`;
 };
 
@@ -48,7 +48,7 @@ const commandText = (of) => {
   if (data.layers_folder && of.view === "clean" && of.white === null) {
     const set = changedFactors(of).map(([name, factor]) =>
       ` --set ${shellWord(`${name}=${isGrey(factor) ? short(factor[0]) : factor.map((v) => short(v)).join(",")}`)}`);
-    return `earthshine relight ${shellWord(`${data.layers_folder}/${camera.name}.exr`)}${set.join("")} --png console.png`;
+    return `earthshine relight ${shellWord(`${data.layers_folder}/${camera.file}.exr`)}${set.join("")} --png console.png`;
   }
   const exposure = of.view === "monitor" ? "" : of.white === null ? " --exposure own" : ` --exposure ${short(of.white)}cd/m2`;
   return `cat > console.toml <<'END'\n${studyText(of)}END\nearthshine study run console.toml -o console-study${exposure}`;

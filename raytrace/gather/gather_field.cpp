@@ -41,6 +41,9 @@ GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
   find_mirror_neighbours();
   lengths_.assign(points_.size(), {});
   over_pixel_.assign(points_.size(), 0);
+  // Without sharing a picture is unbiased and linear in the light: the rays of all pixels start all
+  // over them, whatever the light shows.
+  if (!setting_.shares) std::fill_n(over_pixel_.begin(), grid_, std::uint8_t{1});
   find_first_origins();
   const std::size_t count = points_.size();
   const auto begin = [&](Gathered kind, std::size_t layers) {

@@ -25,7 +25,7 @@ void GatherField::classify_origins(std::uint32_t round, const std::function<bool
     if (over_pixel_[p] != 0 || estimate.samples[p] <= 0.0F) continue;
     // No ray has met a surface: small bodies that other rays will meet may be near.
     const bool met = lengths_[p].count > 0.0;
-    // Without sharing the picture is linear in the light, so that lengths alone decide.
+    // Without sharing (then of off-grid points) lengths alone decide, so that pictures are linear.
     const double of_rays = lengths_[p].harmonic_mean();
     const double reach_m =
         setting_.shares ? std::min(of_rays, lengths_[p].harmonic_mean_of_light()) : of_rays;

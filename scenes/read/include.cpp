@@ -100,8 +100,9 @@ class Includer {
     files_.push_back(path);
     TomlNode tree = read_toml(path);
     check_unit(std::get<TomlTable>(tree.value), path);
-    const fs::path away = path.parent_path().lexically_relative(
+    fs::path away = path.parent_path().lexically_relative(
         folder_.empty() ? fs::path(".") : folder_.lexically_normal());
+    if (away.empty()) away = path.parent_path();  // one is absolute, the other one is not
     open_.push_back(path);
     add(tree, path);
     open_.pop_back();
@@ -129,7 +130,7 @@ class Includer {
     const TomlEntry* unit = find_entry(root, "unit");
     const bool has_lengths = std::any_of(root.begin(), root.end(), [](const TomlEntry& entry) {
       return entry.key == "object" || entry.key == "light" || entry.key == "camera" ||
-             entry.key == "joint" || entry.key == "area";
+             entry.key == "joint" || entry.key == "track" || entry.key == "area";
     });
     if (unit == nullptr && !has_lengths) return;
     const std::string own = unit == nullptr ? "m" : text_in(root, "unit");

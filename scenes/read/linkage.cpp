@@ -45,6 +45,11 @@ class MotionFile {
       for (const CsvField& field : lines_.fields()) header_.push_back(std::string(field.text));
       header_at_ = lines_.fields().front().where;
     }
+    for (const std::string& column : header_) {
+      if (std::ranges::count(header_, column) == 1) continue;
+      throw Error(Blame::Input, header_at_, fmt::format("two columns {}", in_quotes(column)),
+                  "each column has a name of its own");
+    }
     by_utc_ = has("utc");
     if (by_utc_ == has("time_s")) {
       throw Error(Blame::Input, {path_.string(), lines_.line(), 0},
@@ -62,6 +67,16 @@ class MotionFile {
   }
   [[nodiscard]] const base::Location& header_at() const { return header_at_; }
   [[nodiscard]] const std::vector<std::string>& header() const { return header_; }
+
+  // Throws for a column that is neither one of these nor the time.
+  void allow(const std::vector<std::string>& columns) const {
+    for (const std::string& column : header_) {
+      if (column == "utc" || column == "time_s") continue;
+      if (std::ranges::find(columns, column) != columns.end()) continue;
+      throw Error(Blame::Input, header_at_, fmt::format("the column {}", in_quotes(column)),
+                  "allowed are utc or time_s and " + listed(columns));
+    }
+  }
 
   // Rows of these columns; add(numbers, line) makes their values.
   template <class Value, class Make>
@@ -158,8 +173,9 @@ Joint read_joint(Scene& scene, const TableReader& table, double unit_m, std::str
 PoseTable read_poses(Scene& scene, const TableReader& table, double unit_m) {
   MotionFile file(scene, table, "poses", *table.text("poses"));
   std::vector<std::string> columns = {"x", "y", "z"};
-  const bool by_quaternion = file.has("qw");
-  const bool by_angles = file.has("rotate_x");
+  file.allow({"x", "y", "z", "qw", "qx", "qy", "qz", "rotate_x", "rotate_y", "rotate_z"});
+  const bool by_quaternion = file.has("qw") || file.has("qx") || file.has("qy") || file.has("qz");
+  const bool by_angles = file.has("rotate_x") || file.has("rotate_y") || file.has("rotate_z");
   if (by_quaternion && by_angles) {
     throw Error(Blame::Input, file.header_at(), "both a quaternion and angles are there",
                 "a header names qw, qx, qy, qz or rotate_x, rotate_y, rotate_z or none of them");

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "scenes/text/message_text.h"
 #include "scenes/text/text_lines.h"
@@ -89,14 +90,7 @@ class AemReader {
 
  private:
   void read_segment(const CcsdsLine& begin) {
-    CcsdsMeta meta(begin.where, aem_keys);
-    while (true) {
-      if (next_ == message_.lines.size()) cut_off(begin, "META_STOP");
-      const CcsdsLine& line = message_.lines[next_++];
-      if (line.key == "META_STOP") break;
-      if (line.key.empty() || line.key == "META_START") cut_off(begin, "META_STOP");
-      meta.add(line, unknown_);
-    }
+    const CcsdsMeta meta = read_meta_of(message_, next_, aem_keys, unknown_);
     AttitudeSegment segment;
     segment.line = begin.where.line;
     Rows rows = read_frames(meta, segment);
@@ -111,12 +105,6 @@ class AemReader {
                   "segments follow each other; they may share a moment");
     }
     made_.segments.push_back(std::move(segment));
-  }
-
-  [[noreturn]] static void cut_off(const CcsdsLine& begin, const char* wanted) {
-    throw Error(Blame::Input, begin.where,
-                fmt::format("{} that begins here has no {}", begin.key, wanted),
-                "the file is cut off, or the line is missing");
   }
 
   Rows read_frames(const CcsdsMeta& meta, AttitudeSegment& segment) {
@@ -231,8 +219,12 @@ class AemReader {
     static constexpr const char* wanted[] = {
         "four parts of a quaternion", "three angles in degrees",
         "right ascension, declination, spin angle in degrees and its rate in deg/s"};
-    return read_row(line, message_.mjd, system, made_.clock, rows.numbers, 8,
-                    wanted[static_cast<std::size_t>(rows.kind)]);
+    // With derivatives: of a quaternion four rates or three, of angles and of a spin three.
+    static constexpr std::size_t of_quaternion[] = {4, 7, 8}, of_angles[] = {3, 6},
+                                 of_spin[] = {4, 7};
+    const std::span<const std::size_t> allowed[] = {of_quaternion, of_angles, of_spin};
+    const auto kind = static_cast<std::size_t>(rows.kind);
+    return read_row(line, message_.mjd, system, made_.clock, allowed[kind], wanted[kind]);
   }
 
   [[nodiscard]] static glm::dquat turn_of(const std::vector<double>& n, const Rows& rows,
@@ -279,7 +271,7 @@ class AemReader {
       segment.turns.push_back(rows.body_is_a ? glm::conjugate(turn) : turn);
       if (rows.kind == Kind::Spin) segment.spin.emplace_back(n[0], n[1], n[2], n[3]);
     }
-    if (open != nullptr) cut_off(*open, "DATA_STOP");
+    if (open != nullptr) fail_cut_off(*open, "DATA_STOP");
     if (segment.at.empty()) {
       throw Error(Blame::Input, meta.where(), "the segment that begins here has no rows");
     }

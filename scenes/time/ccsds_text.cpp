@@ -163,8 +163,30 @@ Frame CcsdsMeta::frame(const CcsdsLine& line) {
               "allowed are " + frame_names());
 }
 
+CcsdsMeta read_meta_of(const CcsdsMessage& message, std::size_t& next,
+                       std::vector<std::string_view> known, std::vector<std::string>& unknown) {
+  const CcsdsLine& begin = message.lines[next - 1];
+  CcsdsMeta meta(begin.where, std::move(known));
+  for (; next < message.lines.size(); ++next) {
+    const CcsdsLine& line = message.lines[next];
+    if (line.key.empty() || line.key == "META_START") break;
+    if (line.key == "META_STOP") {
+      ++next;
+      return meta;
+    }
+    meta.add(line, unknown);
+  }
+  fail_cut_off(begin, "META_STOP");
+}
+
+void fail_cut_off(const CcsdsLine& begin, std::string_view wanted) {
+  throw Error(Blame::Input, begin.where,
+              fmt::format("{} that begins here has no {}", begin.key, wanted),
+              "the file is cut off, or the line is missing");
+}
+
 CcsdsRow read_row(const CcsdsLine& line, bool mjd, TimeSystem system, EarthClock clock,
-                  std::size_t least, std::size_t most, std::string_view wanted) {
+                  std::span<const std::size_t> allowed, std::string_view wanted) {
   const auto words = words_of(line.value);
   const std::size_t date_words = mjd ? 2 : 1;
   std::vector<double> numbers;
@@ -177,7 +199,7 @@ CcsdsRow read_row(const CcsdsLine& line, bool mjd, TimeSystem system, EarthClock
     numbers.push_back(*number);
   }
   const std::size_t count = words.size() < date_words ? 0 : words.size() - date_words;
-  if (count < least || count > most) {
+  if (std::ranges::find(allowed, count) == allowed.end()) {
     throw Error(Blame::Input, line.where,
                 fmt::format("a row with {} numbers behind its date", count),
                 fmt::format("a row is a date and {}", wanted));

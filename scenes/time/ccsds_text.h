@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -59,15 +60,23 @@ class CcsdsMeta {
   std::vector<CcsdsLine> lines_;
 };
 
+// Reads the metadata whose META_START is the line before `next`, which moves behind META_STOP.
+[[nodiscard]] CcsdsMeta read_meta_of(const CcsdsMessage& message, std::size_t& next,
+                                     std::vector<std::string_view> known,
+                                     std::vector<std::string>& unknown);
+
+// A block of the file that has no end.
+[[noreturn]] void fail_cut_off(const CcsdsLine& begin, std::string_view wanted);
+
 // A row of data: time and numbers.
 struct CcsdsRow {
   Instant at;
   std::vector<double> numbers;
 };
 // wanted: "X Y Z X_DOT Y_DOT Z_DOT", for messages. Throws for words that are not finite numbers,
-// for fewer than `least` or more than `most` numbers, and for an invalid date in this time system.
+// for another count of numbers than those allowed, and for an invalid date in this time system.
 [[nodiscard]] CcsdsRow read_row(const CcsdsLine& line, bool mjd, TimeSystem system,
-                                EarthClock clock, std::size_t least, std::size_t most,
+                                EarthClock clock, std::span<const std::size_t> allowed,
                                 std::string_view wanted);
 
 }  // namespace earthshine::scenes

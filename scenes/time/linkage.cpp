@@ -16,9 +16,11 @@ struct RowPlace {
   double share;
 };
 
+constexpr double slack_s = 1e-3;  // dates are written to 1 ms
+
 template <class Value>
 RowPlace place_in(const MotionTable<Value>& table, Instant t) {
-  if (t < table.at.front() || table.at.back() < t) {
+  if (t + slack_s < table.at.front() || table.at.back() + slack_s < t) {
     const bool late = table.at.back() < t;
     throw base::Error(
         base::Blame::Input, {table.file, late ? table.last_line : table.first_line, 0},
@@ -28,6 +30,7 @@ RowPlace place_in(const MotionTable<Value>& table, Instant t) {
                     utc_text(table.at.back())),
         "Add rows, or change [time]");
   }
+  t = std::clamp(t, table.at.front(), table.at.back());
   const auto after = std::upper_bound(table.at.begin(), table.at.end(), t);
   const auto row = static_cast<std::size_t>(after - table.at.begin()) - 1;
   if (after == table.at.end()) return {row, 0.0};

@@ -19,6 +19,9 @@ using base::Error;
 constexpr double largest_gap_rad = base::pi / 5.0;
 constexpr double span_slack_s = 1.0;  // tolerance of STOP_TIME against the last state
 constexpr double farthest_m = 1e9;
+constexpr double equator_m = 6378137.0, pole_m = 6356752.3;
+constexpr double lowest_unit2 = 0.9996;  // 1 km below the ground: frames differ in their pole
+constexpr double least_turning = 1e-6;   // sine of the angle between position and velocity
 constexpr int most_degree = 31;
 
 // Newton's interpolating polynomial by divided differences; a double node has value and slope.
@@ -139,26 +142,13 @@ class OemReader {
 
  private:
   void read_segment(const CcsdsLine& begin) {
-    CcsdsMeta meta(begin.where, oem_keys);
-    while (true) {
-      if (next_ == message_.lines.size()) cut_off(begin, "META_STOP");
-      const CcsdsLine& line = message_.lines[next_++];
-      if (line.key == "META_STOP") break;
-      if (line.key.empty() || line.key == "META_START") cut_off(begin, "META_STOP");
-      meta.add(line, unknown_);
-    }
+    const CcsdsMeta meta = read_meta_of(message_, next_, oem_keys, unknown_);
     TrajectorySegment segment;
     segment.line = begin.where.line;
     read_meta(meta, segment);
     read_states(meta, segment);
     check_span(meta, segment);
     made_.segments.push_back(std::move(segment));
-  }
-
-  [[noreturn]] static void cut_off(const CcsdsLine& begin, const char* wanted) {
-    throw Error(Blame::Input, begin.where,
-                fmt::format("{} that begins here has no {}", begin.key, wanted),
-                "the file is cut off, or the line is missing");
   }
 
   void read_meta(const CcsdsMeta& meta, TrajectorySegment& segment) {
@@ -250,8 +240,10 @@ class OemReader {
   }
 
   void read_state(const CcsdsLine& line, TimeSystem system, TrajectorySegment& segment) {
-    const CcsdsRow row = read_row(line, message_.mjd, system, made_.clock, 6, 9,
-                                  "X Y Z in km and X_DOT Y_DOT Z_DOT in km/s");
+    static constexpr std::size_t allowed[] = {6, 9};
+    const CcsdsRow row =
+        read_row(line, message_.mjd, system, made_.clock, allowed,
+                 "X Y Z in km and X_DOT Y_DOT Z_DOT in km/s, with or without accelerations");
     if (!segment.at.empty() && !(row.at > segment.at.back())) {
       throw Error(Blame::Input, line.where,
                   fmt::format("the state of {} stands after that of {}", utc_text(row.at),
@@ -261,11 +253,17 @@ class OemReader {
     const auto& n = row.numbers;
     const State state{1e3 * Vec3(n[0], n[1], n[2]), 1e3 * Vec3(n[3], n[4], n[5])};
     const double distance_m = glm::length(state.position_m);
-    // The Earth's smallest radius is 6357 km.
-    if (!(distance_m > 6.35e6 && distance_m < farthest_m)) {
+    // Of the WGS84 ellipsoid; z is the pole to a fraction of a degree in all frames.
+    const Vec3 unit = state.position_m / Vec3(equator_m, equator_m, pole_m);
+    if (!(glm::dot(unit, unit) > lowest_unit2 && distance_m < farthest_m)) {
       throw Error(Blame::Input, line.where,
                   fmt::format("a state {:.6g} km from the Earth's centre", distance_m / 1e3),
-                  "allowed are 6350 to 1000000 km: an OEM is in km and km/s");
+                  "allowed is from the ground to 1000000 km: an OEM is in km and km/s");
+    }
+    const double turning = glm::length(glm::cross(state.position_m, state.velocity_m_s));
+    if (!(turning > least_turning * distance_m * glm::length(state.velocity_m_s))) {
+      throw Error(Blame::Input, line.where, "the velocity has no part across the position",
+                  "an orbit goes around the Earth");
     }
     segment.at.push_back(row.at);
     segment.states.push_back(state);
@@ -315,7 +313,7 @@ class OemReader {
     while (next_ < message_.lines.size()) {
       if (message_.lines[next_++].key == "COVARIANCE_STOP") return;
     }
-    cut_off(begin, "COVARIANCE_STOP");
+    fail_cut_off(begin, "COVARIANCE_STOP");
   }
 
   const CcsdsMessage& message_;

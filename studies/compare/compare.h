@@ -89,9 +89,9 @@ struct Comparison {
   ObjectMap map;
   radiosity::SolveReport solution;  // at the scene's settings
   std::size_t reference_patches = 0;
-  double reference_noise = 0.0;      // noise_of_mean: what the reference itself is uncertain by
-  std::vector<std::string> stopped;  // methods whose pictures the time limit ended
-  bool wide_sources = true;          // anything for distributed lights to stand for
+  double reference_noise = 0.0;      // noise_of_mean() of the reference
+  std::vector<std::string> stopped;  // methods whose pictures reached the time limit
+  bool wide_sources = true;          // a source that distributed lights approximate
   [[nodiscard]] const MethodResult& reference() const { return methods.front(); }
 };
 
@@ -100,8 +100,8 @@ struct Comparison {
                                                       const Method& method,
                                                       std::uint64_t reference = 0);
 
-// Without a time limit and seconds apart, the same values for the same options and seed on any number of threads. Throws as
-// compare_methods and raytrace::earth_area do.
+// Without a time limit the values depend on options and seed only, not on the number of threads
+// (except for seconds). Throws as compare_methods and raytrace::earth_area do.
 [[nodiscard]] Comparison compare(const scenes::World& scene, const scenes::Camera& camera,
                                  const CompareOptions& options,
                                  const raytrace::StageListener& listen = {});

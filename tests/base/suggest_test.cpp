@@ -42,5 +42,17 @@ TEST(Suggest, WordsOfOneMeaning) {
   EXPECT_EQ(nearest_word("pivot", Words{"part", "name"}), "");
 }
 
+// The meaning of a known word comes before its spelling: gain and wait, fov and aov, file and size,
+// resolution and solution differ by two letters.
+TEST(Suggest, AKnownWordIsNoSlip) {
+  EXPECT_EQ(nearest_word("--gain", Words{"--wait", "--exposure"}), "--exposure");
+  EXPECT_EQ(nearest_word("--fov", Words{"--aov"}), "");
+  EXPECT_EQ(nearest_word("--file", Words{"--size", "--output"}), "--output");
+  EXPECT_EQ(nearest_word("--resolution", Words{"--solution", "--size"}), "--size");
+  EXPECT_EQ(nearest_word("origin", Words{"position", "pixel_origin"}), "position");
+  EXPECT_EQ(nearest_word("lamp", Words{"name", "light"}), "light");
+  EXPECT_EQ(nearest_word("--earth", Words{"--part"}), "");  // two edits in five letters
+}
+
 }  // namespace
 }  // namespace earthshine::base

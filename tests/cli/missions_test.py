@@ -73,6 +73,22 @@ class Missions(program.Case):
         self.write("study.toml", 'format = 1\nscene = "bay.toml"\n[orbit]\npositions = 4\n')
         self.says(self.refused("study", "run", "study.toml", "-o", "no"), "study.toml:3", "trajectory", "[time]")
 
+    def test_the_moon_of_a_study_is_that_of_its_moment(self):
+        """A plate that the Moon alone lights: a study of one moment gives what the scene gives at that moment."""
+        self.write("moonlit.toml", 'format = 1\n[time]\nstart = "2026-03-01T12:00:00"\n[orbit]\ntrajectory = "circle.oem"\n'
+                   '[moon]\n[[material]]\nname = "grey"\ndiffuse = 0.5\n[[object]]\nname = "plate"\nshape = "box"\n'
+                   'min = [-1, -1, 0]\nmax = [1, 1, 0.1]\nmaterial = "grey"\ntarget = true\n[[camera]]\nname = "C"\n'
+                   'position = [0, 0, -5]\nlook_at = [0, 0, 0]\nup = [1, 0, 0]\nfov_deg = 20\nresolution = [12, 12]\n')
+        found = {}
+        for moment in ("2026-03-01T12:00:00", "2026-03-01T13:00:00"):
+            self.write("one.toml", f'format = 1\nscene = "moonlit.toml"\n[time]\nstart = "{moment}"\n')
+            here = self.json("study", "visibility", "moonlit.toml", "--set", f"time.moment={moment}", "-o", "v" + moment[12])
+            there = self.json("study", "run", "one.toml", "-o", "r" + moment[12])
+            column = here["results"]["columns"].index("luminance")
+            found[moment] = here["results"]["rows"][0][column]
+            self.assertEqual(there["results"]["rows"][0][column], found[moment], moment)
+        self.assertNotEqual(*found.values())
+
     def test_a_study_solves_anew_for_each_pose(self):
         # The box on a joint: at rest until 12:11, turned by 12:12.
         self.write("bay.toml", MISSION.replace('name = "box"\n', 'name = "box"\njoint = "door"\n') +

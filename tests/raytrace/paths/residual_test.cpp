@@ -17,7 +17,7 @@
 namespace earthshine::raytrace {
 namespace {
 
-constexpr int edge_px = 20, pictures = 10;
+constexpr int edge_px = 20, pictures = 32;
 
 struct Means {
   double mean = 0.0, standard_error = 0.0;

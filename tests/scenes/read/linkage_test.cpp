@@ -224,6 +224,11 @@ TEST_F(MovingScene, BadLinkagesAreRefused) {
   folder.put("back.csv", "utc, j\n2026-03-01T12:01:00, 0\n2026-03-01T12:00:00, 9\n");
   folder.put("nan.csv", "utc, j\n2026-03-01T12:00:00, nan\n");
   folder.put("none.csv", "utc, elbow\n2026-03-01T12:00:00, 1\n");
+  const std::string moment = "\n2026-03-01T12:02:00, 0, 0, 0, 1\n";
+  folder.put("turn.csv", "utc, x, y, z, rotate_z" + moment);
+  folder.put("half.csv", "utc, x, y, z, qx" + moment);
+  folder.put("other.csv", "utc, x, y, z, yaw" + moment);
+  folder.put("twice.csv", "utc, x, y, z, x" + moment);
   folder.put("cut.csv", "utc, j\n2026-03-01T12:00:00\n");
   const struct {
     std::string text;
@@ -242,6 +247,11 @@ TEST_F(MovingScene, BadLinkagesAreRefused) {
       {joint_of("j", "angle_deg = \"none.csv\"\n"), {"none.csv:1", "named j or angle_deg"}},
       {joint_of("j", "angle_deg = \"cut.csv\"\n"), {"cut.csv:2", "1 columns"}},
       {joint_of("j", "") + joint_of("j", ""), {"\"j\""}},
+      {"[[track]]\nname = \"t\"\nposes = \"turn.csv\"\n", {"turn.csv:1", "no column rotate_x"}},
+      {"[[track]]\nname = \"t\"\nposes = \"half.csv\"\n", {"half.csv:1", "no column qw"}},
+      {"[[track]]\nname = \"t\"\nposes = \"other.csv\"\n",
+       {"other.csv:1", "column \"yaw\"", "rotate_x"}},
+      {"[[track]]\nname = \"t\"\nposes = \"twice.csv\"\n", {"twice.csv:1", "two columns \"x\""}},
       {"[[track]]\nname = \"t\"\n", {"poses = \"FILE.csv\" or trajectory"}},
   };
   for (const auto& one : bad) {

@@ -186,6 +186,15 @@ TEST_F(TrajectoryFile, BadFilesAreRefusedInOneLine) {
       {oem_head + oem_meta("2026-03-01T12:00:00", "2026-03-01T12:00:00") +
            oem_row("2026-03-01T12:00:00", {Vec3(6.771e9, 0, 0), Vec3(0, 7.5e6, 0)}),
        {"t.oem:13", "6.771e+06 km from the Earth's centre", "km and km/s"}},
+      {oem_head + oem_meta("2026-03-01T12:00:00", "2026-03-01T12:00:00") +
+           oem_row("2026-03-01T12:00:00", {Vec3(6.771e6, 0, 0), Vec3(-7.5e3, 0, 0)}),
+       {"t.oem:13", "no part across the position"}},
+      // Above the polar radius of 6357 km and below the equatorial one of 6378 km.
+      {oem_head + oem_meta("2026-03-01T12:00:00", "2026-03-01T12:00:00") +
+           oem_row("2026-03-01T12:00:00", {Vec3(6.36e6, 0, 0), Vec3(0, 7.5e3, 0)}),
+       {"t.oem:13", "6360 km from the Earth's centre", "from the ground"}},
+      {good.substr(0, row) + "2026-03-01T12:02:00 1 " + good.substr(row + 21),
+       {"t.oem:15", "a row with 7 numbers", "with or without accelerations"}},
       {good + good.substr(good.find("META_START")), {"t.oem:18", "before", "follow each other"}},
       {good + oem_meta("2026-03-01T12:04:00", "2026-03-01T12:04:00", "TEME") +
            good.substr(good.rfind("2026-03-01T12:04:00Z")),
