@@ -129,7 +129,7 @@ std::string run_study(const std::string& request_text) {
       call.scene.overrides.push_back(fmt::format("quality.error={}", *error));
     }
     call.cameras = request.words("cameras");
-    if (const auto size = request.whole_numbers("size", 2)) {
+    if (const auto size = request.whole_numbers("size", 2, 1)) {
       call.size = app::Size{(*size)[0], (*size)[1]};
     }
     task.study = app::study_of(call, request.words("wanted"), {});

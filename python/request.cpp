@@ -43,14 +43,15 @@ std::vector<std::string> Request::words(const char* key) const {
   return has(key) ? json_[key].get<std::vector<std::string>>() : std::vector<std::string>();
 }
 
-std::optional<std::vector<int>> Request::whole_numbers(const char* key, std::size_t count) const {
+std::optional<std::vector<int>> Request::whole_numbers(const char* key, std::size_t count,
+                                                       int least) const {
   if (!has(key)) return std::nullopt;
   const app::Json& list = json_[key];
-  const auto fits = [](const app::Json& one) {
-    return one.is_number_integer() && one >= 0 && one <= 16384;
+  const auto fits = [least](const app::Json& one) {
+    return one.is_number_integer() && one >= least && one <= 16384;
   };
   if (!list.is_array() || list.size() != count || !std::all_of(list.begin(), list.end(), fits)) {
-    refuse(key, list, fmt::format("allowed are {} whole numbers from 0 to 16384", count));
+    refuse(key, list, fmt::format("allowed are {} whole numbers from {} to 16384", count, least));
   }
   return list.get<std::vector<int>>();
 }

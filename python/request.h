@@ -25,9 +25,9 @@ class Request {
   [[nodiscard]] std::optional<double> number(const char* key) const;
   [[nodiscard]] std::string word(const char* key, const std::string& otherwise) const;
   [[nodiscard]] std::vector<std::string> words(const char* key) const;
-  // Throws base::Error (Input) unless there are `count` integers of at least 0.
-  [[nodiscard]] std::optional<std::vector<int>> whole_numbers(const char* key,
-                                                              std::size_t count) const;
+  // Throws base::Error (Input) unless there are `count` integers of at least `least`.
+  [[nodiscard]] std::optional<std::vector<int>> whole_numbers(const char* key, std::size_t count,
+                                                              int least = 0) const;
   [[nodiscard]] std::uint64_t seed() const;
   [[nodiscard]] int threads() const;
 

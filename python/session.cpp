@@ -65,9 +65,13 @@ app::RenderCall call_of(const Request& request, const std::string& path,
     call.scene.overrides.push_back(fmt::format("quality.error={}", *error));
   }
   call.cameras = request.words("cameras");
-  if (const auto size = request.whole_numbers("size", 2))
+  if (const auto size = request.whole_numbers("size", 2, 1))
     call.size = app::Size{(*size)[0], (*size)[1]};
   if (const auto crop = request.whole_numbers("crop", 4)) {
+    if ((*crop)[2] < 1 || (*crop)[3] < 1) {
+      throw base::Error(base::Blame::Input, "crop", "has no pixels",
+                        "allowed is x, y, width and height, the last two 1 or more");
+    }
     call.crop = raytrace::Window{(*crop)[0], (*crop)[1], (*crop)[2], (*crop)[3]};
   }
   call.time_limit_s = request.number("time_limit").value_or(0.0);

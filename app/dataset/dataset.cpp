@@ -28,6 +28,7 @@
 #include "base/files/png_file.h"
 #include "base/tone.h"
 #include "scenes/read/scene_file.h"
+#include "scenes/text/message_text.h"
 #include "scenes/triangle_point.h"
 
 namespace earthshine::app {
@@ -107,8 +108,17 @@ class DataSet {
     Files inputs = scene.files;
     inputs.push_back(recipe_.path);
     refuse_inputs_in(folder_.path(), inputs);
+    if (common.seed != Common().seed) {
+      throw base::Error(base::Blame::Input, "--seed", "has no effect on a data set", {},
+                        "Set seed in " + recipe_.path.string());
+    }
+    refuse_jointed_targets(scene);
     key_ = {{"build", build_id()}};
-    for (const fs::path& file : inputs) key_[file.filename().string()] = digest_of_file(file);
+    const fs::path here = fs::absolute(recipe_.path).parent_path();
+    for (const fs::path& file : inputs) {
+      const fs::path name = fs::absolute(file).lexically_relative(here);
+      key_[name.generic_string()] = digest_of_file(file);
+    }
     camera_ = static_cast<std::size_t>(wanted_cameras(recipe_.camera.name.empty()
                                                           ? std::vector<std::string>{}
                                                           : std::vector{recipe_.camera.name},
@@ -120,7 +130,8 @@ class DataSet {
 
   [[nodiscard]] const Recipe& recipe() const { return recipe_; }
   [[nodiscard]] bool is_done(std::size_t image) const { return !labels(image).is_null(); }
-  void make(std::size_t image);
+  // Returns whether the picture has its error.
+  bool make(std::size_t image);
   // Writes the lists over all images; false where images are missing.
   bool finish() const;
 
@@ -143,6 +154,8 @@ class DataSet {
     return known;
   }
   [[nodiscard]] std::vector<std::uint32_t> targets_in(const scenes::Scene& scene) const;
+  // Labels have the poses that the recipe draws, without those of joints.
+  void refuse_jointed_targets(const scenes::Scene& scene) const;
   void write_models(const scenes::Scene& scene) const;
   void place_camera(scenes::Scene& scene, const scenes::RayQuery& query, std::size_t image) const;
   void write_picture(const RenderContext& context, const scenes::Camera& camera, const Drawn& drawn,
@@ -167,6 +180,23 @@ std::vector<std::uint32_t> DataSet::targets_in(const scenes::Scene& scene) const
     objects.push_back(static_cast<std::uint32_t>(found - scene.objects.begin()));
   }
   return objects;
+}
+
+void DataSet::refuse_jointed_targets(const scenes::Scene& scene) const {
+  const auto turns_joints = [](const Varied& varied) {
+    return varied.key.starts_with("joint.") || varied.key.starts_with("track.");
+  };
+  const bool varies = std::ranges::any_of(recipe_.varied, turns_joints);
+  const std::vector<std::uint32_t> objects = targets_in(scene);
+  for (std::size_t t = 0; t < objects.size(); ++t) {
+    const DrawnTarget& target = recipe_.targets[t];
+    const std::string& joint = scene.objects[objects[t]].joint;
+    if (joint.empty() || !(target.moves || varies)) continue;
+    throw base::Error(base::Blame::Input, recipe_.path.string(),
+                      fmt::format("[[target]] {} hangs on the joint {}",
+                                  scenes::in_quotes(target.name), scenes::in_quotes(joint)),
+                      "a target that moves has no joint", "Take its joint away in the scene");
+  }
 }
 
 void DataSet::write_models(const scenes::Scene& scene) const {
@@ -246,7 +276,7 @@ void DataSet::write_picture(const RenderContext& context, const scenes::Camera& 
   base::write_png(rgb, picture.width, picture.height, 3, tone.rgb);
 }
 
-void DataSet::make(std::size_t image) {
+bool DataSet::make(std::size_t image) {
   const Draw draw = draw_values(recipe_, image);
   Common common = common_;
   common.seed = draw.seed;
@@ -307,6 +337,7 @@ void DataSet::make(std::size_t image) {
       labels_of({recipe_, draw, loaded.scene, query, model, map, depth_m, depth.scale_mm, image},
                 views, masks));
   base::write_text(folder_.labels(image), dump_lines(record));
+  return drawn.limit == raytrace::Limit::None;
 }
 
 bool DataSet::finish() const {
@@ -350,17 +381,29 @@ void run(const DatasetCall& call, const Common& common) {
   const Interrupt interrupt;
   const std::size_t total = numbers.last - numbers.first + 1;
   const auto report = common.progress->begin("images", Work::Other, double(total));
-  for (std::size_t k = 0; k < total; ++k) {
-    report(k, total);
-    if (!set.is_done(numbers.first + k)) set.make(numbers.first + k);
+  std::vector<std::size_t> noisy;
+  try {
+    for (std::size_t k = 0; k < total; ++k) {
+      report(k, total);
+      const std::size_t image = numbers.first + k;
+      if (!set.is_done(image) && !set.make(image)) noisy.push_back(image);
+    }
+  } catch (const Interrupt::Left&) {
+    throw base::Error(base::Blame::Work, "dataset", "interrupted", {},
+                      "Run the same call again: finished images stay");
   }
   common.progress->end();
   const bool whole = set.finish();
-  if (common.quiet) return;
-  note(whole ? fmt::format("{}: {} images with labels", call.folder, set.recipe().images)
+  if (!common.quiet) {
+    note(whole
+             ? fmt::format("{}: {} images with labels", call.folder, set.recipe().images)
              : fmt::format("{}: images {} to {} are done; the lists of all images are written once "
                            "the others are",
                            call.folder, numbers.first, numbers.last));
+  }
+  if (noisy.empty()) return;
+  throw StoppedShort(
+      fmt::format("these images do not have their error: {}", fmt::join(noisy, ", ")));
 }
 
 }  // namespace

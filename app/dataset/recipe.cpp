@@ -103,9 +103,12 @@ std::string toml_of(const TomlNode& node) {
   if (const auto* text = std::get_if<std::string>(&node.value)) return Json(*text).dump();
   if (const auto* flag = std::get_if<bool>(&node.value)) return *flag ? "true" : "false";
   if (const auto* whole = std::get_if<std::int64_t>(&node.value)) return fmt::format("{}", *whole);
-  const std::vector<double> numbers = numbers_of(node);
-  if (std::holds_alternative<double>(node.value)) return fmt::format("{}", numbers.front());
-  return fmt::format("[{}]", fmt::join(numbers, ", "));
+  if (const auto* number = std::get_if<double>(&node.value)) return fmt::format("{}", *number);
+  std::vector<std::string> items;
+  if (const auto* list = std::get_if<TomlArray>(&node.value)) {
+    for (const TomlNode& item : *list) items.push_back(toml_of(item));
+  }
+  return fmt::format("[{}]", fmt::join(items, ", "));
 }
 
 DrawnCamera read_camera_draw(const TomlNode& node) {
@@ -193,6 +196,19 @@ Varied read_varied(const TomlNode& node) {
     for (const TomlNode& item : *items) varied.words.push_back(toml_of(item));
   }
   return varied;
+}
+
+// The labels follow the poses that [[target]] draws.
+void check_varied(const TomlNode& node, const Varied& varied,
+                  const std::vector<DrawnTarget>& targets) {
+  for (const DrawnTarget& target : targets) {
+    const std::string own = fmt::format("object.{}.", target.name);
+    for (const char* key : {"translate", "rotate", "scale", "target", "joint"}) {
+      if (varied.key != own + key) continue;
+      TableReader(node, "[[vary]]", vary_keys)
+          .fail("key", "sets the pose of a target", "[[target]] draws it, with low and high");
+    }
+  }
 }
 
 double unit_of(const std::filesystem::path& scene) {
@@ -286,6 +302,10 @@ Recipe read_recipe(const std::filesystem::path& path) {
                  "a CCTV camera has an exposure of its own");
     }
   }
+  for (const std::string& setting : recipe.overrides) {
+    if (setting.starts_with("unit"))
+      table.fail("set", "sets the unit", "[[target]] reads the scene file's");
+  }
   recipe.unit_m = unit_of(recipe.scene);
   if (const TomlEntry* entry = table.find("camera")) recipe.camera = read_camera_draw(entry->node);
   for (const TomlNode* entry : named_entries(table, "target")) {
@@ -293,6 +313,7 @@ Recipe read_recipe(const std::filesystem::path& path) {
   }
   for (const TomlNode* entry : named_entries(table, "vary")) {
     recipe.varied.push_back(read_varied(*entry));
+    check_varied(*entry, recipe.varied.back(), recipe.targets);
   }
   const std::string& looked_at = recipe.camera.look_at_target;
   const bool known = std::ranges::any_of(

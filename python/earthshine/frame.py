@@ -175,7 +175,7 @@ def degrade(frame: Frame | np.ndarray | Mapping[str, np.ndarray], camera: str | 
         core = _core.frame_of(planes, fov_deg or 0.0)
     request = {"camera": camera, "seed": seed, "frame": frame_number, "twin": twin, "target_resels": target_resels, "off": list(off),
                "fov_deg": fov_deg}
-    return Monitor(_core.degrade(core, json.dumps(request), None if before is None else before._core))
+    return Monitor(_core.degrade(core, toml.request_text(request), None if before is None else before._core))
 
 
 def _planes(array: np.ndarray) -> dict[str, np.ndarray]:

@@ -67,6 +67,8 @@ class Camera(Entry):
     @to_world.setter
     def to_world(self, matrix: Any) -> None:
         matrix = _rigid(matrix)
+        if self._scene._value("camera", self.name, "joint"):
+            raise ValueError(f"to_world: camera {self.name!r} is on a joint; set position, look_at and up in the joint's axes")
         unit = self._scene.unit_m
         ahead = np.linalg.norm(np.subtract(self.info["look_at_m"], self.info["position_m"]))
         self.position = matrix[:3, 3] / unit
@@ -99,7 +101,7 @@ class Body(Entry):
 
     @property
     def pose(self) -> np.ndarray:
-        """4x4, metres: the mesh's own coordinates to the scene. Settable: rotation, scales along the mesh's axes, translation."""
+        """4x4, metres: the mesh's own coordinates to the scene (of an object on a joint, to the joint's axes). Settable: rotation, scales along the mesh's axes, translation."""
         unit = self._scene.unit_m
         scale = np.broadcast_to(np.asarray(self._known("scale", 1.0), dtype=float), 3)
         matrix = np.eye(4)
@@ -379,11 +381,7 @@ class Scene:
     # Internal.
 
     def _request(self, request: Mapping[str, Any]) -> str:
-        def plain(value: Any) -> Any:
-            if isinstance(value, (np.generic, np.ndarray)):
-                return value.tolist()
-            raise TypeError(f"{value!r} is no number, text or list")
-        return json.dumps({**request, "threads": self.threads}, default=plain)
+        return toml.request_text({**request, "threads": self.threads})
 
     def _sync(self) -> Any:
         """The core with all changes read. If a change is rejected, the changes since the last call are undone."""

@@ -49,7 +49,7 @@ def _column(cells: list[str]) -> np.ndarray:
 
 def _run(folder: str | os.PathLike[str], request: Mapping[str, Any]) -> Study:
     name = os.fspath(folder)
-    return Study(name, json.loads(_core.study(json.dumps({**request, "folder": name}))))
+    return Study(name, json.loads(_core.study(toml.request_text({**request, "folder": name}))))
 
 
 def study(path: str | os.PathLike[str], folder: str | os.PathLike[str], *, seed: int = 1) -> Study:
@@ -68,6 +68,8 @@ def orbit(path: str | os.PathLike[str], folder: str | os.PathLike[str], *, posit
           set: Mapping[str, Any] | Iterable[str] | None = None, error: float | None = None, cameras: Sequence[str] = (),  # noqa: A002
           size: tuple[int, int] | None = None, wanted: Sequence[str] = (), seed: int = 1) -> Study:
     """Visibility at `positions` along the scene's orbit, as `study orbit`."""
+    if positions < 1:
+        raise ValueError("positions: 1 or more places along the orbit")
     return _run(folder, {**_request("orbit", path, set, error, cameras, size, wanted, seed), "positions": positions})
 
 

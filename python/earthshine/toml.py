@@ -9,7 +9,16 @@ from typing import Any
 
 import numpy as np
 
-NAMED = ("material", "object", "light", "area", "camera", "cctv", "range_sensor")
+NAMED = ("material", "object", "light", "area", "camera", "cctv", "range_sensor", "joint", "track")
+
+
+def request_text(request: Mapping[str, Any]) -> str:
+    """A request to the core as JSON; numpy's numbers and arrays are numbers and lists."""
+    def plain(value: Any) -> Any:
+        if isinstance(value, (np.generic, np.ndarray)):
+            return value.tolist()
+        raise TypeError(f"{value!r} is no number, text or list")
+    return json.dumps(request, default=plain)
 
 
 def number_text(value: float) -> str:

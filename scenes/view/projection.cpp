@@ -10,6 +10,7 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr int newton_steps = 40;  // 4 or 5 are usual
+constexpr int bisections = 20;    // to a millionth of the limit
 constexpr double newton_end = 1e-14;
 constexpr int azimuths = 64;         // along which the distortion is followed outward
 constexpr double limit_step = 0.01;  // of the radius or angle
@@ -155,8 +156,26 @@ glm::dmat2 Projection::brown_conrady_slope(const glm::dvec2& p) const {
           radial + 2.0 * p.y * p.y * by_r2 + 6.0 * p1 * p.y + 2.0 * p2 * p.x};
 }
 
+// The radial terms alone grow up to the limit: bisection. Newton's steps from the film itself would
+// leave the limit where it is near.
+glm::dvec2 Projection::start_for(const glm::dvec2& film) const {
+  const double wanted = glm::length(film);
+  if (!(wanted > 0.0) || !std::isfinite(limit_)) return film;
+  const auto [k1, k2, p1, p2, k3] = k_;
+  const auto radial = [&](double r) {
+    return r * (1.0 + r * r * (k1 + r * r * (k2 + r * r * k3)));
+  };
+  if (radial(limit_) <= wanted) return film * (2.0 * limit_ / wanted);
+  double low = 0.0, high = limit_;
+  for (int k = 0; k < bisections; ++k) {
+    const double middle = 0.5 * (low + high);
+    (radial(middle) < wanted ? low : high) = middle;
+  }
+  return film * (low / wanted);
+}
+
 glm::dvec2 Projection::without_brown_conrady(const glm::dvec2& film) const {
-  glm::dvec2 at = film;
+  glm::dvec2 at = start_for(film);
   for (int k = 0; k < newton_steps; ++k) {
     const double radius = glm::length(at);
     if (radius > limit_) {

@@ -47,6 +47,7 @@ struct Projection {
   [[nodiscard]] glm::dvec2 film(const Vec3& point) const;
   [[nodiscard]] glm::dvec2 brown_conrady(const glm::dvec2& pinhole) const;
   [[nodiscard]] glm::dmat2 brown_conrady_slope(const glm::dvec2& pinhole) const;
+  [[nodiscard]] glm::dvec2 start_for(const glm::dvec2& film) const;
   [[nodiscard]] glm::dvec2 without_brown_conrady(const glm::dvec2& film) const;
   [[nodiscard]] double fisheye(double angle) const;
   [[nodiscard]] double fisheye_slope(double angle) const;

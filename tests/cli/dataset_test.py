@@ -212,8 +212,29 @@ class Dataset(program.Case):
                                 ("[1.4, 2.5]", "[2.5, 1.4]", "radius"), ("log_uniform = [10", "log_uniform = [-10", "above 0")):
             self.write("set.toml", DATASET.replace(old, new, 1))
             self.says(self.refused("dataset", "set.toml", "-o", "out"), "set.toml", words)
+        vary = '[[vary]]\nkey = "{}"\nuniform = [1, 2]\n'
+        for key in ("object.cube.translate", "object.cube.scale", "object.cube.target"):
+            self.write("set.toml", DATASET + vary.format(key))
+            self.says(self.refused("dataset", "set.toml", "-o", "out"), "set.toml", "pose of a target")
+        self.write("set.toml", DATASET.replace("seed = 7", 'seed = 7\nset = ["unit=m"]'))
+        self.says(self.refused("dataset", "set.toml", "-o", "out"), "set.toml", "sets the unit")
         self.write("set.toml", DATASET)
         self.says(self.refused("dataset", "set.toml", "-o", "out", "--images", "3-9"), "--images", "0 to 3")
+        self.says(self.refused("dataset", "set.toml", "-o", "out", "--seed", "5"), "--seed", "no effect")
+        self.write("a.toml", SCENE.replace('name = "cube"\n', 'name = "cube"\njoint = "j"\n') +
+                   '[[joint]]\nname = "j"\npivot = [0, 0, 0]\naxis = [0, 0, 1]\nangle_deg = 10\n')
+        self.says(self.refused("dataset", "set.toml", "-o", "out"), "set.toml", "cube", "joint")
+
+    def test_a_scene_in_another_folder_is_part_of_the_key(self):
+        """Recipe and scene may have one file name: a change of the scene makes the image anew."""
+        (self.folder / "sub").mkdir()
+        self.write("sub/set.toml", SCENE)
+        self.write("set.toml", DATASET.replace("a.toml", "sub/set.toml"))
+        self.done("dataset", "set.toml", "-o", "out", "-q", "--images", "0")
+        before = (self.folder / "out/images/000000.json").read_text()
+        self.write("sub/set.toml", SCENE.replace("diffuse = 0.5", "diffuse = 0.6"))
+        self.done("dataset", "set.toml", "-o", "out", "-q", "--images", "0")
+        self.assertNotEqual((self.folder / "out/images/000000.json").read_text(), before)
 
 
 if __name__ == "__main__":

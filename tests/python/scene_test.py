@@ -139,7 +139,8 @@ class Scenes(program.Case):
         self.says(str(refused.exception), "positon", "position")
         self.assertEqual(scene.settings, [])  # the scene is as it was
         scene.render("A", error=0.5)
-        for wrong in ({"error": 0}, {"error": 2}, {"size": (0.5, 3)}, {"layers": ["dept"]}, {"indirect": "rays"}, {"seed": -1}, {"crop": (1, 2)}):
+        for wrong in ({"error": 0}, {"error": 2}, {"size": (0.5, 3)}, {"layers": ["dept"]}, {"indirect": "rays"}, {"seed": -1}, {"crop": (1, 2)},
+                      {"size": (0, 0)}, {"crop": (0, 0, 0, 0)}):
             with self.assertRaises(earthshine.Error, msg=wrong):
                 scene.render("A", **wrong)
 

@@ -19,6 +19,12 @@ Camera calibrated(Distortion distortion, std::array<double, 5> k) {
   return camera;
 }
 
+// Its farthest corner is 1.6 from the axis on the film.
+Camera wide(Camera camera) {
+  camera.intrinsics = {250.0, 250.0, 320.0, 240.0};
+  return camera;
+}
+
 glm::dvec2 pixel(const Projection& projection, const Vec3& point) {
   const glm::dvec2 at = projection.place(point);
   return {640.0 * at.x, 480.0 * at.y};
@@ -59,6 +65,9 @@ TEST(Projection, InvertsAndMeasures) {
        {calibrated(Distortion::None, {}),
         calibrated(Distortion::BrownConrady, {-0.3, 0.1, 0.001, -0.002, 0.02}),
         calibrated(Distortion::BrownConrady, {0.4, 0.2, -0.003, 0.002, 0.0}),
+        // The film r (1 + 0.5 r^2 - 0.2 r^4) grows up to r = sqrt(2), to 1.697: a wide picture lies
+        // between the limit of r and that of the film.
+        wide(calibrated(Distortion::BrownConrady, {0.5, -0.2, 0.0, 0.0, 0.0})),
         calibrated(Distortion::Fisheye, {0.05, -0.01, 0.002, -0.0005})}) {
     const Projection lens(camera, 640, 480);
     EXPECT_TRUE(lens.covers_picture());
