@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "raytrace/adaptive/adaptive_render.h"
 #include "raytrace/adaptive/stated_error.h"
+#include "raytrace/adaptive/sum_errors.h"
 #include "raytrace/frame/cryptomatte.h"
 #include "raytrace/frame/first_hit.h"
 #include "raytrace/frame/layers.h"
@@ -85,14 +86,11 @@ LayerNoise in_window(const LayerNoise& noise, const Window& window, int columns)
   return inside;
 }
 
-std::vector<LayerNoise> noise_by_part(const Sampled& sampled, const Window& window,
-                                      const RenderOptions& options) {
-  std::vector<LayerNoise> noise;
-  if (!sampled.field || sampled.sums.image_layers < 2) return noise;
-  for (const Gathered kind : {Gathered::Solution, Gathered::Residual, Gathered::Lobe}) {
-    noise.push_back(in_window(sampled.field->layer_noise(kind), window, options.columns));
-  }
-  noise.push_back(in_window(sampled.sums.layer_noise(options.columns), window, options.columns));
+std::vector<LayerNoise> noise_in_window(const Sampled& sampled, const Window& window,
+                                        const RenderOptions& options) {
+  if (!sampled.field || sampled.sums.image_layers < 2) return {};
+  std::vector<LayerNoise> noise = noise_by_part(sampled.sums, *sampled.field, options.columns, 1);
+  for (LayerNoise& part : noise) part = in_window(part, window, options.columns);
   return noise;
 }
 
@@ -177,7 +175,7 @@ Frame render(const scenes::World& world, const radiosity::Solution& solution,
   Sampled sampled = sample_picture(shared, setup.world(), model, options, progress, frame.report);
   const PixelSums& sums = sampled.sums;
   frame.error = state_error(sums, sampled.field ? &*sampled.field : nullptr);
-  if (options.per_light) frame.layers.noise = noise_by_part(sampled, window, options);
+  if (options.per_light) frame.layers.noise = noise_in_window(sampled, window, options);
   if (!options.regions.empty()) {
     frame.regions =
         RegionNoise(frame.layers, options.regions, static_cast<std::size_t>(options.columns));

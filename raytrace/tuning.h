@@ -40,6 +40,13 @@ inline constexpr double stop_fraction_of_coarse = 0.94, stop_fraction_of_fine = 
 // Fraction of the wanted error that rounds aim at: less overshoots, more needs a further round.
 inline constexpr double planned_share = 0.873;
 static_assert(planned_share < stop_fraction_of_fine);  // or rounds would not end
+// Study conditions, each a sum of the picture's layers: those whose squared error is more than so
+// many times too large get no samples of their own, and all samples together cost at most so many
+// times those for the sum of all layers. More finishes more conditions at the terminators, at their price.
+inline constexpr double most_gain_for_sums = 4.0, most_growth_for_sums = 1.5;
+// The rounds for the sum of all layers end at this share of their wanted error: a condition's
+// picture shows only some of the lights, and its relative error is larger.
+inline constexpr double share_of_the_sum = 0.8;
 // Confidence of that decision, in standard errors of the squared error (90 %, one-sided): more is
 // surer of the wanted error; costs 0.6 to 5 % of the rays.
 inline constexpr double one_sided_90 = 1.2816;

@@ -55,9 +55,6 @@ void describe(Fields& fields, Either<StudyFrames::Frame> auto& frame) {
 
 namespace {
 
-// A condition's picture shows only some of the lights, and its relative error is larger than the
-// error of all lights together: 1.1 to 1.25 times on the payload bay, except for a grazing Sun.
-constexpr double share_of_the_sum = 0.8;
 // Limit of layers times pixels for one gather point per pixel; larger pictures have one per four
 // pixels, at a third of the memory and time.
 constexpr std::size_t most_values = std::size_t{1} << 23U;
@@ -128,8 +125,13 @@ raytrace::RenderOptions StudyFrames::options(const StudyCamera& camera) const {
   options.seed = common_.seed;
   options.per_light = true;
   options.aovs = {"object"};
-  options.error = share_of_the_sum * wanted_error(part_.basis_scene.scene);
+  options.error = wanted_error(part_.basis_scene.scene);
   options.gather_step = values_of(camera) > most_values ? 2 : 1;
+  for (std::size_t place = 0; place < part_.basis->places().size(); ++place) {
+    for (std::size_t setting = 0; setting < part_.basis->settings().size(); ++setting) {
+      options.sums.push_back(luminances(part_.basis->weights(place, setting)));
+    }
+  }
   options.stop = Interrupt::leave_or_go_on;
   return options;
 }
@@ -165,6 +167,7 @@ Json StudyFrames::cache_key(const StudyCamera& camera) const {
   cache_key["gather_step"] = how.gather_step;
   cache_key["denoise"] = how.denoise;
   cache_key["error"] = how.error;
+  cache_key["sums"] = digest_of(how.sums);
   cache_key["seed"] = how.seed;
   return cache_key;
 }

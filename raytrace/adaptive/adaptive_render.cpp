@@ -22,8 +22,13 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-Allocator allocator_of(const RenderOptions& options) {
-  return options.has_rounds() ? Allocator::to_error(options.error)
+bool draws_sums(const RenderOptions& options, std::size_t layers) {
+  return !options.sums.empty() && layers > 1 && options.error > 0.0;
+}
+
+Allocator allocator_of(const RenderOptions& options, std::size_t layers) {
+  const double share = draws_sums(options, layers) ? tuning::share_of_the_sum : 1.0;
+  return options.has_rounds() ? Allocator::to_error(share * options.error)
                               : Allocator::fixed(options.gather_rays, options.camera_samples);
 }
 
@@ -37,7 +42,7 @@ class AdaptiveRender {
         options_(options),
         progress_(progress),
         report_(report),
-        allocator_(allocator_of(options)) {
+        allocator_(allocator_of(options, shared.layers)) {
     if (options.regions.empty()) return;
     noted_.assign(static_cast<std::size_t>(camera.columns) * static_cast<std::size_t>(camera.rows),
                   0U);
@@ -58,7 +63,9 @@ class AdaptiveRender {
     covered_ = covered_ && !ends();
     reserve_s_ = denoising_s_;
     std::uint32_t round = 1;
+    const bool by_sums = field_ && draws_sums(options_, shared_.layers);
     while (allocator_.has_rounds() && !ends() && sample_round(round)) ++round;
+    while (by_sums && !ends() && sample_for_sums(round)) ++round;
     for (std::uint32_t k = 0; is_for_eye() && k < tuning::speck_rounds && !ends(); ++k) {
       if (!sample_specks(round + k)) break;
     }
@@ -112,6 +119,35 @@ class AdaptiveRender {
     if (!plan) return false;
     expected_ = done_ + std::max(plan->cost, done_ * (allocator_.growth() - 1.0));
     sample(*plan, round);
+    return true;
+  }
+
+  // The same for options.sums.
+  bool sample_for_sums(std::uint32_t round) {
+    const SampleCosts each = sample_costs(field());
+    const double so_far = spent(*sums_, field(), each);
+    if (most_for_sums_ <= 0.0) most_for_sums_ = tuning::most_growth_for_sums * so_far;
+    SamplePlanner planner(*sums_, field(), each);
+    const SumErrors errors(*sums_, *field_, planner.whole(), options_.sums, camera_.columns);
+    const double aim = std::pow(stop_fraction(options_.error) * options_.error, 2.0);
+    double worst = 0.0;
+    std::vector<std::size_t> open;
+    for (std::size_t k = 0; k < errors.squared().size(); ++k) {
+      const double square = errors.squared()[k];
+      if (square <= aim || square > tuning::most_gain_for_sums * aim) continue;
+      open.push_back(k);
+      worst = std::max(worst, square);
+    }
+    const double most = std::min(affordable(so_far), most_for_sums_ - so_far);
+    if (open.empty() || most <= 0.0) return false;
+    planner.demand(errors.demand(open));
+    const double step = std::min(worst / aim / tuning::planned_share, tuning::most_step);
+    SamplePlan plan = planner.plan(planner.squared_error() / step, most);
+    const double fewest = std::min(most, tuning::least_step * so_far);
+    if (plan.cost < fewest) plan = planner.plan(0.0, fewest);
+    if (plan.cost <= 0.0) return false;
+    expected_ = done_ + plan.cost;
+    sample(plan, round);
     return true;
   }
 
@@ -289,9 +325,10 @@ class AdaptiveRender {
   std::optional<PixelSums> sums_;
   std::optional<Witness> witness_;
   Clock::time_point start_ = Clock::now();
-  double reserve_s_ = 0.0;    // share of the time limit for the remaining steps
-  double denoising_s_ = 0.0;  // duration of the last denoising
-  bool covered_ = true;       // the initial samples are complete
+  double reserve_s_ = 0.0;      // share of the time limit for the remaining steps
+  double most_for_sums_ = 0.0;  // cost of all samples
+  double denoising_s_ = 0.0;    // duration of the last denoising
+  bool covered_ = true;         // the initial samples are complete
   double done_ = 0.0, expected_ = 0.0;
 };
 

@@ -83,6 +83,16 @@ SamplePlanner::SamplePlanner(const PixelSums& sums, const GatherField* field,
       stated_(state_error(sums, field)),
       whole_(add_up(stated_)) {}
 
+void SamplePlanner::demand(ErrorDemand demand) {
+  for (std::size_t p = 0; p < stated_.squared.size(); ++p) {
+    for (std::size_t part = 0; part < error_parts; ++part) {
+      stated_.squared[p][part] *= demand.at(part, p);
+    }
+  }
+  whole_ = add_up(stated_);
+  demand_ = std::move(demand);
+}
+
 void SamplePlanner::find_gains() {
   if (has_gains_ || whole_.reference_luminance <= 0.0) return;
   has_gains_ = true;
@@ -126,7 +136,8 @@ void SamplePlanner::find_field_gains(double scale) {
       const float samples = std::max(field_->samples(kind, p), fewest);
       const double weight =
           stated_.weight(window.index(x, y), whole_.luminance) * reflected * field_->cover_of(p);
-      const double factor = weight * weight * scale * pixels;
+      const double asked = demand_ ? double(demand_->at(k, window.index(x, y))) : 1.0;
+      const double factor = asked * weight * weight * scale * pixels;
       if (factor * (one - four) <= 0.0) return {};
       return {static_cast<std::uint32_t>(p),
               static_cast<std::uint8_t>(k),
@@ -192,7 +203,8 @@ void SamplePlanner::find_pixel_gains(double scale) {
         {variance[p], around * std::min(1.0, tuning::unsure_samples / samples), unseen * samples});
     const Scatter& like = of_class[class_of(sums_.samples[p])];
     const double better = (like.pixels < tuning::few_pixels_of_class ? all : like).share();
-    const double error = likely * better * scale / samples;
+    const double asked = demand_ ? double(demand_->at(camera_kind, p)) : 1.0;
+    const double error = asked * likely * better * scale / samples;
     if (error <= 0.0) return {};
     const double cost = samples * costs_.camera + double(sums_.rays[p]) * costs_.camera_ray;
     return {static_cast<std::uint32_t>(p),

@@ -6,10 +6,12 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "raytrace/adaptive/stated_error.h"
+#include "raytrace/adaptive/sum_errors.h"
 #include "raytrace/shade/pixel_sums.h"
 
 namespace earthshine::raytrace {
@@ -39,6 +41,9 @@ class SamplePlanner {
  public:
   // field: nullptr without gather points. The arguments must outlive the planner unchanged.
   SamplePlanner(const PixelSums& sums, const GatherField* field, const SampleCosts& costs);
+  // From here on all squared errors have these factors.
+  void demand(ErrorDemand demand);
+  [[nodiscard]] const ErrorSums& whole() const { return whole_; }
 
   // Of the current picture, relative to its mean luminance, squared.
   [[nodiscard]] double squared_error() const {
@@ -94,6 +99,7 @@ class SamplePlanner {
   SampleCosts costs_;
   StatedError stated_;
   ErrorSums whole_;
+  std::optional<ErrorDemand> demand_;
   bool has_gains_ = false;
   std::unique_ptr<Gain[]> gains_;
   std::size_t gain_count_ = 0;

@@ -186,6 +186,11 @@ struct LayerNoise {
     float cover = 1.0F, stands_for = 1.0F;
   };
   void add(const Row& row, std::span<const float> off_by);
+  // Selects one in `one_in` of the rows that represent only themselves; it represents `one_in`.
+  [[nodiscard]] static bool selects(Row& row, std::size_t one_in);
+  // Of the sum with these weights, by the places that the row represents; mean: of the sum, cd/m^2.
+  [[nodiscard]] double squared_error(std::size_t k, std::span<const double> weights,
+                                     double mean) const;
   [[nodiscard]] Row row(std::size_t k) const { return {place[k], cover[k], stands_for[k]}; }
 };
 
@@ -202,8 +207,8 @@ struct LayerErrors {
     }
     return luminance.size();
   }
-  // Keeps one in `step` of the places that represent only themselves; it represents `step` places.
-  void thin(std::size_t step);
+  // Keeps the rows that LayerNoise::selects().
+  void thin(std::size_t one_in);
   // Reads each place's light from the picture. groups: names of its layers.
   void see(const base::Image& picture, std::span<const std::string> groups);
   // squared: by part, stated for the sum of all layers: mean, over reference_luminance^2

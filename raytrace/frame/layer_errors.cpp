@@ -12,14 +12,8 @@ namespace {
 // Sum over the places of the squared error of the sum with these weights.
 double noise_of(const LayerNoise& noise, std::span<const double> weights, double mean) {
   double squares = 0.0;
-  for (std::size_t k = 0; k < noise.off.size(); k += weights.size()) {
-    double off = 0.0, luminance = 0.0;
-    for (std::size_t layer = 0; layer < weights.size(); ++layer) {
-      off += weights[layer] * double(noise.off[k + layer]);
-      luminance += weights[layer] * double(noise.luminance[k + layer]);
-    }
-    const double counted = error_weight(luminance, mean) * off;
-    squares += double(noise.stands_for[k / weights.size()]) * counted * counted;
+  for (std::size_t k = 0; k < noise.place.size(); ++k) {
+    squares += noise.squared_error(k, weights, mean);
   }
   return squares;
 }
@@ -31,6 +25,25 @@ void LayerNoise::add(const Row& row, std::span<const float> off_by) {
   cover.push_back(row.cover);
   stands_for.push_back(row.stands_for);
   off.insert(off.end(), off_by.begin(), off_by.end());
+}
+
+double LayerNoise::squared_error(std::size_t k, std::span<const double> weights,
+                                 double mean) const {
+  const float* of_row = &off[k * weights.size()];
+  const float* light = &luminance[k * weights.size()];
+  double error = 0.0, sum = 0.0;
+  for (std::size_t layer = 0; layer < weights.size(); ++layer) {
+    error += weights[layer] * double(of_row[layer]);
+    sum += weights[layer] * double(light[layer]);
+  }
+  const double counted = error_weight(sum, mean) * error;
+  return double(stands_for[k]) * counted * counted;
+}
+
+bool LayerNoise::selects(Row& row, std::size_t one_in) {
+  if (row.stands_for > 1.0F || one_in <= 1) return true;
+  row.stands_for = static_cast<float>(one_in);
+  return base::mix64(row.place) % one_in == 0;
 }
 
 void LayerErrors::see(const base::Image& picture, std::span<const std::string> groups) {
@@ -73,16 +86,13 @@ std::optional<LayerErrors::OfSum> LayerErrors::of(std::span<const double> weight
   return OfSum{std::sqrt(squares), mean};
 }
 
-void LayerErrors::thin(std::size_t step) {
+void LayerErrors::thin(std::size_t one_in) {
   for (LayerNoise& part : noise) {
     LayerNoise kept;
     kept.edge_px = part.edge_px;
     for (std::size_t k = 0; k < part.place.size(); ++k) {
       LayerNoise::Row row = part.row(k);
-      if (row.stands_for <= 1.0F && step > 1) {
-        if (base::mix64(row.place) % step != 0) continue;
-        row.stands_for = static_cast<float>(step);
-      }
+      if (!LayerNoise::selects(row, one_in)) continue;
       kept.add(row, {&part.off[k * layer_count()], layer_count()});
     }
     part = std::move(kept);

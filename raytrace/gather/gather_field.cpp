@@ -215,7 +215,7 @@ void GatherField::drop_notes(Gathered kind, const std::vector<std::uint32_t>& an
   all = std::move(kept);
 }
 
-LayerNoise GatherField::layer_noise(Gathered kind) const {
+LayerNoise GatherField::layer_noise(Gathered kind, std::size_t one_in) const {
   LayerNoise noise;
   noise.edge_px = setting_.step;
   const Notes& notes = notes_[number(kind)];
@@ -224,14 +224,15 @@ LayerNoise GatherField::layer_noise(Gathered kind) const {
   std::vector<float> off(image_layers_);
   for (std::size_t k = 0; k < notes.point.size(); ++k) {
     const std::size_t p = notes.point[k];
+    const auto [x, y] = picture_pixel(p);
+    LayerNoise::Row place{static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x),
+                          static_cast<float>(cover_of(p)), noted_weight(p)};
+    if (!LayerNoise::selects(place, one_in)) continue;
     const auto factor = static_cast<float>(reflected(kind, p)) / samples(kind, p);
     for (std::size_t layer = 0; layer < off.size(); ++layer) {
       off[layer] = factor * notes.off[k * image_layers_ + layer];
     }
-    const auto [x, y] = picture_pixel(p);
-    noise.add({static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x),
-               static_cast<float>(cover_of(p)), noted_weight(p)},
-              off);
+    noise.add(place, off);
   }
   return noise;
 }

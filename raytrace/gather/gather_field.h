@@ -164,7 +164,12 @@ class GatherField {
   [[nodiscard]] double error_of(Gathered kind, std::size_t point) const;
   // The factor from the estimate to the visible radiance: k_d or k_s.
   [[nodiscard]] double reflected(Gathered kind, std::size_t point) const;
-  [[nodiscard]] LayerNoise layer_noise(Gathered kind) const;
+  // one_in: LayerNoise::selects().
+  [[nodiscard]] LayerNoise layer_noise(Gathered kind, std::size_t one_in = 1) const;
+  // Sums of the samples so far, before denoising, by layer.
+  [[nodiscard]] std::span<const glm::vec3> sampled(Gathered kind, std::size_t point) const {
+    return {&estimate_[number(kind)].sum[point * estimate_[number(kind)].layers], image_layers_};
+  }
   [[nodiscard]] RayCounts rays() const;  // all kinds
   [[nodiscard]] const RayCounts& rays_of(Gathered kind) const { return rays_of_[number(kind)]; }
 

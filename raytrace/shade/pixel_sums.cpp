@@ -82,7 +82,7 @@ std::span<float> PixelSums::layers_of(std::size_t pixel) {
   return {&layers_differ[(noted_row[pixel] - 1U) * image_layers], image_layers};
 }
 
-LayerNoise PixelSums::layer_noise(int columns) const {
+LayerNoise PixelSums::layer_noise(int columns, std::size_t one_in) const {
   LayerNoise noise;
   const Window picture{0, 0, columns, 0};
   std::vector<float> off(image_layers);
@@ -91,10 +91,12 @@ LayerNoise PixelSums::layer_noise(int columns) const {
       const std::size_t pixel = window.index(x, y);
       if (noted_row[pixel] == 0 || !counts(pixel)) continue;
       const std::size_t row = noted_row[pixel] - 1U;
+      LayerNoise::Row place{picture.index(x, y), 1.0F, stands_for[row]};
+      if (!LayerNoise::selects(place, one_in)) continue;
       for (std::size_t layer = 0; layer < image_layers; ++layer) {
         off[layer] = layers_differ[row * image_layers + layer] / static_cast<float>(samples[pixel]);
       }
-      noise.add({picture.index(x, y), 1.0F, stands_for[row]}, off);
+      noise.add(place, off);
     }
   }
   return noise;

@@ -44,7 +44,8 @@ struct PixelSums {
             std::span<const std::uint8_t> noted = {}, int columns = 0);
   // Layer differences of a pixel that samples the noise of the layers (layer_noise_step).
   [[nodiscard]] std::span<float> layers_of(std::size_t pixel);
-  [[nodiscard]] LayerNoise layer_noise(int columns) const;
+  // one_in: LayerNoise::selects().
+  [[nodiscard]] LayerNoise layer_noise(int columns, std::size_t one_in = 1) const;
   // Variance of the mean luminance, from the spread of the samples alone.
   [[nodiscard]] double sample_variance(std::size_t pixel) const;
   // Squared error of the mean, from the pixel's two halves; right on average over pixels. Where the
