@@ -33,13 +33,13 @@ struct Law {
 };
 constexpr std::array<Law, 10> laws = {{{Work::Read, "read", 0.2, 0.0, true},
                                        {Work::Pilot, "pilot", 1.0, 2.0, true},
-                                       {Work::Solve, "solve", 0.2, 5e-5, true},
-                                       {Work::StudySolve, "study solve", 1.0, 2.5e-3, true},
-                                       {Work::Picture, "picture", 1.0, 3e-4, false},
-                                       {Work::StudyPicture, "study picture", 5.0, 2e-4, false},
+                                       {Work::Solve, "solve", 0.2, 2e-5, true},
+                                       {Work::StudySolve, "study solve", 0.5, 2e-5, true},
+                                       {Work::Picture, "picture", 0.3, 7e-5, true},
+                                       {Work::StudyPicture, "study picture", 1.0, 2e-4, true},
                                        {Work::Paths, "paths", 0.1, 1e-6, true},
                                        {Work::Conditions, "conditions", 0.5, 1e-6, true},
-                                       {Work::Surfaces, "surfaces", 1.0, 1.2e-3, false},
+                                       {Work::Surfaces, "surfaces", 1.0, 1e-4, true},
                                        {Work::Other, "other", 0.5, 0.0, true}}};
 
 const Law& law_of(Work work) {

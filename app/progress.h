@@ -38,7 +38,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // units: triangles of a solve; pixels of a picture at 5 % error; pictures of a pilot; conditions
+  // units: triangles of a solve; pixels of a picture, at 5 % error; pictures of a pilot; conditions
   // times pixels.
   void expect(Work work, double units);
   // One of these is not needed: its result was there.

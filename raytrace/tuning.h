@@ -67,6 +67,15 @@ inline constexpr std::size_t most_layers_for_eye = 8;
 // and cost smooth pictures too much.
 inline constexpr int initial_camera_samples = 4;
 
+// --- Progress (adaptive/adaptive_render.cpp); no effect on the picture ---
+// Cost of an initial sample of each kind and of a camera sample, and the error of a picture of
+// initial samples, on the payload bay: they predict a picture's cost until the first statement.
+inline constexpr std::array<double, 3> usual_cost_of_point = {1.0, 8.0, 5.0};
+inline constexpr double usual_cost_of_camera = 12.0;
+inline constexpr double usual_initial_error = 0.08, least_usual_growth = 1.3;
+// Cost of a picture over the one that a round predicts: later rounds, specks, denoising by layer.
+inline constexpr double usual_rest = 1.15;
+
 // --- Time limits and stops (adaptive/adaptive_render.cpp, gather/initial_samples.cpp) ---
 // Time to reserve for the rest of a picture, over the time for finding the gather points (measured:
 // 6 by day, 9 by night), and over the denoising time: less overruns a limit, more wastes it.

@@ -107,7 +107,8 @@ Solved solve_as_exactly(const ExactCall& call, StageTimes& times) {
   const double triangles = static_cast<double>(loaded.scene.triangles.size());
   call.common.progress->expect(Work::Surfaces, triangles);
   if (call.time_limit_s > 0.0) call.common.progress->end_within(call.time_limit_s);
-  (void)call.common.progress->begin("solve", Work::Surfaces, triangles);
+  const Progress::Listener passes =
+      call.common.progress->begin("solve", Work::Surfaces, triangles);
   double in_stages = 0.0;
   raytrace::Wanted wanted = wanted_error(loaded, call.common, call.time_limit_s, times);
   wanted.stop = Interrupt::asked;
@@ -120,7 +121,7 @@ Solved solve_as_exactly(const ExactCall& call, StageTimes& times) {
   raytrace::SteeredSolution found = raytrace::reach_surfaces(
       scene, wanted, call.common.seed, listen, [&](const std::string& stage) -> raytrace::Progress {
         call.common.progress->relabel(stage);
-        return {};
+        return passes;
       });
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   times.add({{"residual", std::max(0.0, taken.count() - in_stages)}});

@@ -96,8 +96,7 @@ class Runner {
     common_.progress->expect(Work::StudySolve, static_cast<double>(basis.scene.triangles.size()));
     for (const StudyCamera& camera : part.cameras) {
       const double pixels = double(camera.columns) * camera.rows;
-      common_.progress->expect(Work::StudyPicture,
-                               static_cast<double>(part.basis->groups().count()) * pixels);
+      common_.progress->expect(Work::StudyPicture, pixels);
       common_.progress->expect(Work::Conditions, units_of_conditions(part, camera));
     }
   }

@@ -90,14 +90,23 @@ class AdaptiveRender {
     const InitialSampling initial =
         allocator_.initial(std::max(points, options_.initial_sampling_pixels));
     const double share = initial.every_second ? 0.5 : 1.0;
-    for (const std::uint32_t each : initial.field()) expected_ += share * each * double(points);
-    expected_ += initial.camera * static_cast<double>(sums_->samples.size());
+    const auto cost = [&](Gathered kind) {
+      const auto k = static_cast<std::size_t>(kind);
+      return tuning::usual_cost_of_point[k] * share * initial.field()[k] * double(points);
+    };
+    for (const Gathered kind : every_kind) expected_ += cost(kind);
+    const double pixels = static_cast<double>(sums_->samples.size());
+    expected_ += tuning::usual_cost_of_camera * initial.camera * pixels;
+    if (options_.error > 0.0) {
+      expected_ *= std::max(tuning::least_usual_growth,
+                            std::pow(tuning::usual_initial_error / options_.error, 2.0));
+    }
     bool covered = true;
     if (field_) {
       for (const Gathered kind : every_kind) {
         const std::uint32_t each = initial.field()[static_cast<std::size_t>(kind)];
         field_->sample_initial(kind, each, initial.every_second, [this] { return ends(); });
-        add_progress(share * each * double(points));
+        add_progress(cost(kind));
         if (ends()) field_->sample_sparse(kind);
       }
       covered = !ends();
@@ -117,8 +126,7 @@ class AdaptiveRender {
     const double so_far = spent(*sums_, field(), each);
     const std::optional<SamplePlan> plan = allocator_.next(planner, so_far, affordable(so_far));
     if (!plan) return false;
-    expected_ = done_ + std::max(plan->cost, done_ * (allocator_.growth() - 1.0));
-    sample(*plan, round);
+    sample(*plan, round, so_far, allocator_.predicted_cost(planner, *plan, so_far));
     return true;
   }
 
@@ -146,8 +154,7 @@ class AdaptiveRender {
     const double fewest = std::min(most, tuning::least_step * so_far);
     if (plan.cost < fewest) plan = planner.plan(0.0, fewest);
     if (plan.cost <= 0.0) return false;
-    expected_ = done_ + plan.cost;
-    sample(plan, round);
+    sample(plan, round, so_far, so_far + plan.cost);
     return true;
   }
 
@@ -163,11 +170,19 @@ class AdaptiveRender {
     const double most = std::min(tuning::speck_cost * so_far, affordable(so_far));
     const SamplePlan plan = SamplePlanner(*sums_, field(), each).plan_for_specks(most);
     if (plan.cost <= 0.0) return false;
-    sample(plan, round);
+    sample(plan, round, so_far, so_far + plan.cost);
     return true;
   }
 
-  void sample(const SamplePlan& plan, std::uint32_t round) {
+  // predicted: cost of all samples of the picture.
+  void sample(const SamplePlan& plan, std::uint32_t round, double so_far, double predicted) {
+    done_ = so_far;
+    expected_ = tuning::usual_rest * predicted;
+    double samples = 0.0;
+    for (std::size_t p = 0; p < plan.camera.size(); ++p) {
+      samples += plan.camera[p] - std::min(plan.camera[p], sums_->samples[p]);
+    }
+    cost_of_sample_ = (plan.cost - plan.field_cost) / std::max(1.0, samples);
     if (field_) {
       const auto start = Clock::now();
       for (std::size_t k = 0; k < gathered_kinds && !ends(); ++k) {
@@ -271,7 +286,9 @@ class AdaptiveRender {
   void shade(const std::vector<std::uint32_t>& wanted) {
     shade_samples(
         shared_, camera_, wanted, *sums_, report_.rays, [&] { return ends(); },
-        [&](std::uint64_t samples) { add_progress(static_cast<double>(samples)); });
+        [&](std::uint64_t samples) {
+          add_progress(cost_of_sample_ * static_cast<double>(samples));
+        });
   }
 
   // Most samples for the witness. Fixed numbers have no limit, so that a crop has the pixels of the
@@ -329,7 +346,8 @@ class AdaptiveRender {
   double most_for_sums_ = 0.0;  // cost of all samples
   double denoising_s_ = 0.0;    // duration of the last denoising
   bool covered_ = true;         // the initial samples are complete
-  double done_ = 0.0, expected_ = 0.0;
+  // Cost of the samples so far and of all that are expected (SampleCosts); of a camera sample.
+  double done_ = 0.0, expected_ = 0.0, cost_of_sample_ = tuning::usual_cost_of_camera;
 };
 
 }  // namespace

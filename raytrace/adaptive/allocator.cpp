@@ -64,17 +64,19 @@ std::optional<SamplePlan> Allocator::next(SamplePlanner& planner, double so_far,
   return plan;
 }
 
-double Allocator::growth() const {
-  const Statement last = statements_.empty() ? Statement() : statements_.back();
-  return last.error * last.error / std::max(squared_aim(last.confidence_factor), 1e-12);
+// A plan at most quadruples a point's samples; beyond, samples grow as the squared error falls.
+double Allocator::predicted_cost(const SamplePlanner& planner, const SamplePlan& plan,
+                                 double so_far) const {
+  if (wanted_ <= 0.0) return so_far + plan.cost;
+  const double aimed = squared_aim(planner.confidence_factor());
+  return (so_far + plan.cost) * std::max(1.0, plan.squared_error / aimed);
 }
 
 double Allocator::growth(SamplePlanner& planner, double so_far) const {
   const double now = planner.squared_error(), aimed = squared_aim(planner.confidence_factor());
   if (now <= aimed || so_far <= 0.0) return 1.0;
   const SamplePlan plan = planner.plan(aimed, std::numeric_limits<double>::infinity());
-  // A plan at most quadruples a point's samples; beyond, samples grow as the squared error falls.
-  return (1.0 + plan.cost / so_far) * std::max(1.0, plan.squared_error / aimed);
+  return predicted_cost(planner, plan, so_far) / so_far;
 }
 
 bool Allocator::is_hopeless(const std::vector<Statement>& statements) {

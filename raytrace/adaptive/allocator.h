@@ -52,9 +52,10 @@ class Allocator {
                                                double affordable);
   // Whether far more samples than the error should take have hardly reduced it.
   [[nodiscard]] bool gave_up() const { return gave_up_; }
-  // Predicted ratio of all samples to the samples so far, from the last stated error alone.
-  [[nodiscard]] double growth() const;
-  // The same ratio, from the plan of the next samples.
+  // Predicted cost of all samples, if this plan of the planner is the next.
+  [[nodiscard]] double predicted_cost(const SamplePlanner& planner, const SamplePlan& plan,
+                                      double so_far) const;
+  // Predicted ratio of all samples to the samples so far, from the plan of the next samples.
   [[nodiscard]] double growth(SamplePlanner& planner, double so_far) const;
 
   // Stated error after samples of that cost, with its confidence factor (ErrorSums).

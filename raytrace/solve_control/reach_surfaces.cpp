@@ -47,7 +47,7 @@ class SurfaceSearch {
         wanted_(wanted),
         given_(scene.scene.quality),
         listen_(listen),
-        progress_(progress) {
+        progress_(over_passes(progress)) {
     result_.solver = first_surface_options(scene.scene, wanted.error, seed);
     result_.surface.known = false;
     solve(seed);
@@ -75,6 +75,25 @@ class SurfaceSearch {
   }
 
  private:
+  // Reports of a pass as those of all passes, which cost about the same.
+  [[nodiscard]] StageListener over_passes(const StageListener& stage) const {
+    if (!stage) return {};
+    return [this, &stage](const std::string& name) -> Progress {
+      return [this, of_pass = stage(name)](std::size_t done, std::size_t total) {
+        if (!of_pass || total == 0) return;
+        constexpr std::size_t fine = 1000;  // parts of a pass
+        const std::size_t before = fine * result_.steps.size();
+        of_pass(before + fine * done / total, before + fine * passes_to_go());
+      };
+    };
+  }
+  // A pass divides the error by about 1.5.
+  [[nodiscard]] std::size_t passes_to_go() const {
+    constexpr double each = 1.5;
+    const double now = result_.steps.empty() ? first_error : result_.steps.back().estimate;
+    const double passes = std::log(std::max(1.0, now / wanted_.error)) / std::log(each);
+    return std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(passes)));
+  }
   // Light that no ray finds, such as a small spot near a lamp that is only visible in mirrors, is
   // missing from all samples alike. The ledger's defect `lacks` then is a lower bound of the error.
   void hold_to_ledger(double lacks) {
@@ -247,7 +266,7 @@ class SurfaceSearch {
   const Wanted& wanted_;
   const scenes::Quality& given_;
   const SolveListener& listen_;
-  const StageListener& progress_;
+  const StageListener progress_;
   SteeredSolution result_;
   std::optional<LightOnSurfaces> light_;
   std::optional<SurfaceRounds> rounds_;  // exists if light_ does
