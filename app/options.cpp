@@ -50,6 +50,17 @@ std::optional<ToneChoice> tone_of(const std::string& text) {
   return tone;
 }
 
+// A share that was written as a percentage or with a decimal comma; "" for anything else.
+std::string meant_number(std::string text) {
+  std::ranges::replace(text, ',', '.');
+  const bool percent = text.ends_with('%');
+  if (percent) text.pop_back();
+  const auto number = parsed<double>(text);
+  if (!number) return {};
+  const double share = percent ? *number / 100.0 : *number;
+  return share > 0.0 && share <= 1.0 ? fmt::format("{:g}", share) : std::string();
+}
+
 }  // namespace
 
 void add_scene(CLI::App& command, SceneInput& input) {
@@ -67,6 +78,10 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
           "--error",
           [&input](const std::string& text) {
             const auto error = parsed<double>(text);
+            if (const std::string meant = meant_number(text); !error && !meant.empty()) {
+              throw CLI::ValidationError(
+                  "--error", fmt::format("\"{}\"; did you mean {}?", text, meant));
+            }
             if (error && *error > 1.0 && *error <= 100.0) {
               throw CLI::ValidationError("--error",
                                          fmt::format("{} means {:g} %; did you mean {:g}?", text,
@@ -78,8 +93,7 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
             }
             input.overrides.push_back(fmt::format("quality.error={}", *error));
           },
-          "Wanted relative error, to which render and solve go on; visibility and orbit draw by "
-          "the settings that go with it; the same as --set quality.error=E")
+          "Wanted relative error of pictures and solutions; the same as --set quality.error=E")
       ->type_name("E");
 }
 

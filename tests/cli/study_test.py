@@ -124,6 +124,24 @@ class Compare(Study):
             values = png.pixels(self.png("d", f"{method}.png"))[3]
             self.assertAlmostEqual(sum(values) / len(values), grey, delta=3, msg=method)
 
+    def test_dry_run_has_all_methods_and_writes_nothing(self):
+        """The whole is the sum of its parts; a time limit ends pictures, not solves."""
+        call = ("study", "compare", "ball.toml", "-o", "d", "--lights", "4,16", "--dry-run")
+        plan = self.json(*call)
+        self.assertEqual([row["method"] for row in plan["methods"]], self.METHODS)
+        self.assertAlmostEqual(plan["seconds"], plan["solve_seconds"] + sum(row["seconds"] for row in plan["methods"]), places=9)
+        limited = self.json(*call, "--time-limit", "0.001")
+        self.assertEqual(limited["seconds"], max(limited["solve_seconds"], 0.001))
+        self.says(self.done(*call), *self.METHODS, "solutions", "about")
+        self.assertFalse((self.folder / "d").exists())
+
+    def test_time_limit_names_the_pictures_that_it_ended(self):
+        call = ("study", "compare", "ball.toml", "-o", "d", "--lights", "4", "--time-limit", "0.001", "--error", "0.0001")
+        run = self.run_program(*call)
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.says(run.stderr, "time limit", "reference", "radiosity")
+        self.assertIn("radiosity", self.result("d", "compare.json")["stopped_by_time_limit"])
+
     def test_scene_without_targets_is_compared_all_the_same(self):
         self.write("box.toml", program.CLOSED_BOX)
         text = self.done("study", "compare", "box.toml", "-o", "d", "--lights", "4")

@@ -76,6 +76,8 @@ class WrongCalls(program.Case):
     def test_an_error_in_percent_is_recognised(self):
         for call in ("render", "solve"):
             self.says(self.refused(call, "box.toml", "-o", "a", "--error", "5"), "5 means 500 %; did you mean 0.05?")
+            for slip in ("5%", "0,05"):
+                self.says(self.refused(call, "box.toml", "-o", "a", "--error", slip), slip, "did you mean 0.05?")
         self.says(self.refused("render", "box.toml", "-o", "a", "--error", "500"), "above 0 and at most 1")
 
     def test_unknown_option_comes_before_missing_arguments(self):
