@@ -214,9 +214,15 @@ radiosity::Solution solve_or_read(const LoadedScene& loaded, const scenes::RayQu
     solution = radiosity::solve(loaded.world(query), options, fits);
     times.add(solution.report.seconds);
   } else {
+    std::vector<std::string> others;
     solution = times.measure("read solution", [&] {
-      return radiosity::read_solution(path, origin_of(loaded, options));
+      radiosity::SolutionOrigin origin = origin_of(loaded, options);
+      origin.other_settings = &others;
+      return radiosity::read_solution(path, origin);
     });
+    if (!others.empty() && !common.quiet) {
+      note(fmt::format("note: {} was solved with other settings: {}", path, fmt::join(others, ", ")));
+    }
   }
   note_balance(solution, options.balance);
   return solution;

@@ -120,9 +120,10 @@ void refuse_stale(const Hdf5Reader& file, const SolutionOrigin& origin) {
   for (const ScenePart& part : scene_parts(origin.scene, origin.groups)) {
     if (file.count_attribute(part.key) != part.digest) differ.push_back(part.words);
   }
+  std::vector<std::string>& settings = origin.other_settings ? *origin.other_settings : differ;
   for (const SolveKnob& knob : solve_knobs(origin.options)) {
     const auto compare = [&](auto now, auto then) {
-      if (now != then) differ.push_back(fmt::format("{} ({}, now {})", knob.words, then, now));
+      if (now != then) settings.push_back(fmt::format("{} ({}, now {})", knob.words, then, now));
     };
     if (const auto* number = std::get_if<double>(&knob.value)) {
       compare(*number, file.number_attribute(knob.key));

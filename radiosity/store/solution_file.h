@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "radiosity/solution.h"
 
@@ -20,6 +21,8 @@ struct SolutionOrigin {
   const scenes::LightGroups& groups;
   const SolveOptions& options;
   std::string program;  // version: other versions may give other numbers
+  // Reading: gets the settings of the solve that differ from `options`; null: they are refused.
+  std::vector<std::string>* other_settings = nullptr;
 };
 
 // Writes a temporary file and renames it. The same solution gives the same bytes: stage times are
