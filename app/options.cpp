@@ -79,8 +79,8 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
           [&input](const std::string& text) {
             const auto error = parsed<double>(text);
             if (const std::string meant = meant_number(text); !error && !meant.empty()) {
-              throw CLI::ValidationError(
-                  "--error", fmt::format("\"{}\"; did you mean {}?", text, meant));
+              throw CLI::ValidationError("--error",
+                                         fmt::format("\"{}\"; did you mean {}?", text, meant));
             }
             if (error && *error > 1.0 && *error <= 100.0) {
               throw CLI::ValidationError("--error",

@@ -7,7 +7,7 @@
 
 #include "app/cctv/cctv.h"
 #include "app/cctv/degrade_list.h"
-#include "app/cctv/frame_parts.h"
+#include "app/cctv/tape.h"
 #include "app/command.h"
 #include "app/console.h"
 #include "app/options.h"
@@ -30,7 +30,6 @@ struct DegradeCall {
   std::optional<double> fov_deg, f_number;
   std::vector<std::string> off;
   bool list = false, json = false;
-  PartCall part;
 };
 
 [[noreturn]] void refuse(std::string_view where, std::string_view found, std::string_view remedy) {
@@ -67,9 +66,6 @@ void check_call(const DegradeCall& call) {
   }
   if (!call.cctv.empty() && !(call.scene.empty() && call.preset.empty())) {
     refuse("--cctv", "cannot be combined with --scene or --preset", "Give one of them");
-  }
-  if (call.part.task == PartCall::Task::Solve) {
-    refuse("--part", "a sequence has no solution", "Write --part K/N");
   }
   if (call.scene.empty() && !call.camera.empty()) {
     refuse("--camera", "needs a scene", "Add --scene SCENE");
@@ -186,18 +182,9 @@ void run(const DegradeCall& call, const Common& common) {
   memory.f_number = twin_memory.f_number = call.f_number;
   Json reports = Json::array();
   const HeaderTexts mark = partial_mark(header);
-  std::optional<FrameParts> parts;
-  Share own = {0, tape.size()};
-  if (call.part.in_parts()) {
-    parts.emplace(call.part, call.tape, tape, std::vector{call.output, call.twin}, setup, common);
-    own = parts->to_do();
-  }
-  for (std::size_t place = remembers(setup.chain.camera) ? 0 : own.first; place < own.last;
-       ++place) {
-    const TapeFrame& frame = tape[place];
-    const bool is_own = place >= own.first;
+  for (const TapeFrame& frame : tape) {
     options.frame = frame.number;
-    StagePictures stages(is_own ? numbered(call.stages, frame.number) : "", inputs, options);
+    StagePictures stages(numbered(call.stages, frame.number), inputs, options);
     degrade::Result result;
     if (frame.inputs.size() == 2) {
       const base::Image first = reader.read(frame.inputs[0], setup.chain);
@@ -209,7 +196,7 @@ void run(const DegradeCall& call, const Common& common) {
     }
     memory = result.memory;
     result.report.negative_pixels += reader.file.negative_pixels;
-    if (is_own) write_cctv(numbered(call.output, frame.number), setup, result, mark);
+    write_cctv(numbered(call.output, frame.number), setup, result, mark);
     Json report = cctv_json(setup, result);
     report["picture"] = picture_json(reader.file, reader.whole);
     if (!call.twin.empty()) {
@@ -217,15 +204,12 @@ void run(const DegradeCall& call, const Common& common) {
                                                setup.chain.camera, setup.chain.monitor, options,
                                                {static_cast<int>(call.target_resels)}, twin_memory);
       twin_memory = twin.memory;
-      if (is_own) write_twin(numbered(call.twin, frame.number), setup, twin, result, mark);
+      write_twin(numbered(call.twin, frame.number), setup, twin, result, mark);
       report["twin"] = twin_json(twin);
     }
-    if (!is_own) continue;
-    if (parts) parts->keep(place, report);
     reports.push_back(std::move(report));
     if (!common.quiet) note("  " + cctv_summary(setup, result));
   }
-  if (call.part.task == PartCall::Task::Merge) reports = parts->reports();
   if (!call.json) return;
   print(dump(tape.size() == 1 && !reports.empty() ? reports.front() : Json{{"frames", reports}}));
 }
@@ -273,7 +257,6 @@ std::vector<Command> add_degrade(CLI::App& program) {
                    "The picture's analytic twin: noise-free, mean, variance, SNR, probability of "
                    "detection, masks (EXR)")
       ->type_name("FILE.exr");
-  add_part_options(*parser, call->part);
   add_whole_number(*parser, "--target-resels", call->target_resels, 1, 199,
                    "Size of the details whose detection --twin maps, odd (default 5)");
   parser

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace earthshine::app {
 namespace {
@@ -101,6 +102,7 @@ Frame frame_of(CachedResult kept) {
       stated.squared[pixel][part] = squares[pixel];
     }
   }
+  report.relative_noise = std::sqrt(raytrace::add_up(stated).squared_error());
   // Files store layers sorted by name.
   frame.image = {kept.image.width, kept.image.height, {}};
   for (const Json& layer : facts.at("layers")) {

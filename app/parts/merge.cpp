@@ -115,9 +115,8 @@ Command add_merge(CLI::App& program, const RunCall& run_call) {
       "merge", "What the parts of a call (--part) have left, as one process would have written it");
   const auto call = std::make_shared<MergeCall>();
   parser
-      ->add_option(
-          "DIR", call->folder,
-          "Folder of the parts: OUTPUT.parts of render and degrade, the study's own of a study")
+      ->add_option("DIR", call->folder,
+                   "Folder of the parts: OUTPUT.parts of render, the study's own of a study")
       ->required()
       ->type_name("");
   parser->add_flag("--json", call->json, "Report as JSON on standard output");

@@ -197,12 +197,11 @@ PartsRecord read_parts_record(const fs::path& folder) {
   }
   std::error_code why, ignored;
   static_cast<void>(fs::exists(folder / parts_file, why));
-  throw Error(
-      Blame::Input, folder.string(),
-      why                           ? "cannot be looked into: " + why.message()
-      : fs::exists(folder, ignored) ? fmt::format("holds no {}", parts_file)
-                                    : std::string("is not there"),
-      "it is the folder of a call with --part: OUTPUT.parts of render and degrade, DIR of a study");
+  throw Error(Blame::Input, folder.string(),
+              why                           ? "cannot be looked into: " + why.message()
+              : fs::exists(folder, ignored) ? fmt::format("holds no {}", parts_file)
+                                            : std::string("is not there"),
+              "it is the folder of a call with --part: OUTPUT.parts of render, DIR of a study");
 }
 
 void join_parts(const fs::path& folder, const Common& common, const Json& digests, PartCall& part) {

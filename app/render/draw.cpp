@@ -82,7 +82,7 @@ Drawn draw_picture(const RenderContext& context, const scenes::Camera& camera, S
   drawn.options.time_limit_s = context.time_limit_s;
   const raytrace::RenderOptions& options = drawn.options;
   drawn.frame = times.measure("render", [&] {
-    return context.parts != nullptr ? context.parts->joined(camera)
+    return context.parts != nullptr ? context.parts->picture(camera)
                                     : draw_frame(context, camera, options);
   });
   if (context.call.no_error) {

@@ -107,8 +107,7 @@ Solved solve_as_exactly(const ExactCall& call, StageTimes& times) {
   const double triangles = static_cast<double>(loaded.scene.triangles.size());
   call.common.progress->expect(Work::Surfaces, triangles);
   if (call.time_limit_s > 0.0) call.common.progress->end_within(call.time_limit_s);
-  const Progress::Listener passes =
-      call.common.progress->begin("solve", Work::Surfaces, triangles);
+  const Progress::Listener passes = call.common.progress->begin("solve", Work::Surfaces, triangles);
   double in_stages = 0.0;
   raytrace::Wanted wanted = wanted_error(loaded, call.common, call.time_limit_s, times);
   wanted.stop = Interrupt::asked;
@@ -221,7 +220,8 @@ radiosity::Solution solve_or_read(const LoadedScene& loaded, const scenes::RayQu
       return radiosity::read_solution(path, origin);
     });
     if (!others.empty() && !common.quiet) {
-      note(fmt::format("note: {} was solved with other settings: {}", path, fmt::join(others, ", ")));
+      note(fmt::format("note: {} was solved with other settings: {}", path,
+                       fmt::join(others, ", ")));
     }
   }
   note_balance(solution, options.balance);

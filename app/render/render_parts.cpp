@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/console.h"
 #include "app/parts/frame_file.h"
 #include "app/parts/shared_solution.h"
@@ -12,7 +14,6 @@
 #include "base/error.h"
 #include "radiosity/store/solution_key.h"
 #include "raytrace/adaptive/adaptive_render.h"
-#include "raytrace/frame/join.h"
 
 namespace earthshine::app {
 namespace {
@@ -77,63 +78,29 @@ Solved RenderParts::light(StageTimes& times) {
   return find_light(call, times);
 }
 
-raytrace::Window RenderParts::picture_of(std::size_t camera) const {
-  return {0, 0, options_[camera].columns, options_[camera].rows};
-}
-
-std::vector<RenderParts::Piece> RenderParts::pieces() const {
-  std::vector<Piece> pieces;
-  const bool whole = steers(wanted_.call, wanted_.loaded.scene);
-  std::vector<std::size_t> first = {0};  // index of each camera's first item
-  for (const raytrace::RenderOptions& options : options_) {
-    const int rows = raytrace::window_of(options).rows;
-    first.push_back(first.back() + (whole ? 1 : static_cast<std::size_t>(rows)));
-  }
-  PartCall part = part_;
-  for (part.number = 1; part.number <= part_.count; ++part.number) {
-    const Share share = share_of(part, first.back());
-    for (std::size_t k = 0; k < cameras_.size(); ++k) {
-      const std::size_t from = std::max(share.first, first[k]);
-      const std::size_t to = std::min(share.last, first[k + 1]);
-      if (from >= to) continue;
-      raytrace::Window window = raytrace::window_of(options_[k]);
-      if (!whole) {
-        window.y += static_cast<int>(from - first[k]);
-        window.rows = static_cast<int>(to - from);
-      }
-      pieces.push_back({k, part.number, window});
-    }
-  }
-  return pieces;
-}
-
-Json RenderParts::key_of(const Piece& piece) const {
-  const raytrace::Window& window = piece.window;
+Json RenderParts::key_of(std::size_t camera) const {
   return {{"what", "share of a picture"},
           {"call", digests_},
           {"build", scene_key_["build"]},
           {"solution", solution_},
-          {"camera", cameras_[piece.camera]->name},
-          {"window", {window.x, window.y, window.columns, window.rows}}};
+          {"camera", cameras_[camera]->name}};
 }
 
 void RenderParts::draw_share(const RenderContext& context) const {
-  std::size_t mine = 0, drawn = 0;
-  for (const Piece& piece : pieces()) {
-    if (piece.part != part_.number) continue;
-    ++mine;
+  const Share share = share_of(part_, cameras_.size());
+  std::size_t drawn = 0;
+  for (std::size_t k = share.first; k < share.last; ++k) {
     std::string said;
-    if (store_->find(key_of(piece), said)) continue;
+    if (store_->find(key_of(k), said)) continue;
     if (!said.empty()) note("note: " + said);
-    raytrace::RenderOptions options = options_[piece.camera];
-    options.crop = piece.window;
-    const raytrace::Frame frame = draw_frame(context, *cameras_[piece.camera], options);
+    const raytrace::Frame frame = draw_frame(context, *cameras_[k], options_[k]);
     if (frame.report.stopped) end_part_if_interrupted();
-    store_->keep(key_of(piece), kept_frame(frame, picture_of(piece.camera)));
+    store_->keep(key_of(k), kept_frame(frame, {0, 0, options_[k].columns, options_[k].rows}));
     ++drawn;
   }
   if (wanted_.common.quiet) return;
-  const std::string done = mine == 0 ? "nothing to do: there are fewer rows or pictures than parts"
+  const std::size_t mine = share.last - share.first;
+  const std::string done = mine == 0 ? "nothing to do: there are fewer cameras than parts"
                                      : fmt::format("{} drawn, {} there already, in {}", drawn,
                                                    mine - drawn, folder_.string());
   note(fmt::format("part {} of {}: {}", part_.number, part_.count, done));
@@ -141,30 +108,23 @@ void RenderParts::draw_share(const RenderContext& context) const {
 
 void RenderParts::check_complete() const {
   std::vector<MissingWork> missing;
-  for (const Piece& piece : pieces()) {
+  for (std::size_t k = 0; k < cameras_.size(); ++k) {
     std::string said;
-    if (store_->find(key_of(piece), said)) continue;
-    const raytrace::Window& window = piece.window;
+    if (store_->find(key_of(k), said)) continue;
     missing.push_back(
-        {fmt::format("camera {}, rows {} to {}{}", cameras_[piece.camera]->name, window.y,
-                     window.y + window.rows - 1, said.empty() ? "" : " (" + said + ")"),
-         piece.part});
+        {fmt::format("camera {}{}", cameras_[k]->name, said.empty() ? "" : " (" + said + ")"),
+         part_of(k, cameras_.size(), part_.count)});
   }
   if (!missing.empty()) refuse_to_merge(folder_, missing);
 }
 
-raytrace::Frame RenderParts::joined(const scenes::Camera& camera) const {
-  std::vector<raytrace::Frame> frames;
-  std::size_t number = 0;
-  for (const Piece& piece : pieces()) {
-    if (cameras_[piece.camera] != &camera) continue;
-    number = piece.camera;
-    std::string said;
-    std::optional<CachedResult> kept = store_->find(key_of(piece), said);
-    if (!kept) refuse_to_merge(folder_, {{said, piece.part}});  // it existed a moment ago
-    frames.push_back(frame_of(std::move(*kept)));
-  }
-  return raytrace::join(frames, raytrace::window_of(options_[number]));
+raytrace::Frame RenderParts::picture(const scenes::Camera& camera) const {
+  const auto k = static_cast<std::size_t>(std::ranges::find(cameras_, &camera) - cameras_.begin());
+  std::string said;
+  std::optional<CachedResult> kept = store_->find(key_of(k), said);
+  // It existed a moment ago.
+  if (!kept) refuse_to_merge(folder_, {{said, part_of(k, cameras_.size(), part_.count)}});
+  return frame_of(std::move(*kept));
 }
 
 }  // namespace earthshine::app

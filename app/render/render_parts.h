@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `render --part`: processes share the rows of all pictures of a call, camera by camera. Pictures
-// whose settings depend on the whole picture (--error) are not divided.
+// `render --part`: processes share the cameras of a call.
 #pragma once
 
 #include <optional>
@@ -28,18 +27,11 @@ class RenderParts {
   void draw_share(const RenderContext& context) const;
   // Throws base::Error (Work) if a part is missing, with the command that makes it.
   void check_complete() const;
-  // A camera's picture, joined from the parts.
-  [[nodiscard]] raytrace::Frame joined(const scenes::Camera& camera) const;
+  // A camera's stored picture.
+  [[nodiscard]] raytrace::Frame picture(const scenes::Camera& camera) const;
 
  private:
-  // Rows of a camera's picture.
-  struct Piece {
-    std::size_t camera = 0, part = 0;
-    raytrace::Window window;
-  };
-  [[nodiscard]] std::vector<Piece> pieces() const;
-  [[nodiscard]] Json key_of(const Piece& piece) const;
-  [[nodiscard]] raytrace::Window picture_of(std::size_t camera) const;
+  [[nodiscard]] Json key_of(std::size_t camera) const;
 
   const LightCall wanted_;
   const PartCall& part_;

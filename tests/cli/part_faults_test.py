@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Faults in parts of pictures, studies and sequences: kills, full disks, duplicate starts, other
+"""Faults in parts of pictures and studies: kills, full disks, duplicate starts, other
 builds, wrong clocks. No result is lost or merged wrongly: the final result equals that by one
 process."""
 import os
@@ -14,15 +14,12 @@ import unittest
 import parts_test
 import program
 import study_parts_test
-from tiny_bay import SMALL_MONITOR
 
 ORBIT = study_parts_test.ORBIT
-SEQUENCE = parts_test.Sequences.CALL
 # The call, the folder for `merge`, and the position of the parts' record in it.
 WORKS = {
     "render": (parts_test.CALL, "v.exr.parts", "."),
     "study": ((*ORBIT, "o"), "o", "points"),
-    "degrade": (SEQUENCE, "f#.png.parts", "."),
 }
 
 
@@ -42,11 +39,7 @@ class PartFaults(study_parts_test.StudyPartsCase):
 
     def setUp(self):
         super().setUp()
-        slow = '\n[[cctv]]\nname = "slow"\niris_slew = 1.0\nlag = 0.4\n\n' + SMALL_MONITOR
-        self.write("ball.toml", parts_test.BALL.replace('name = "above"', 'name = "above"\ncctv = "slow"') + slow)
-        for k in range(parts_test.Sequences.FRAMES):
-            self.done("render", "ball.toml", "-o", f"{k}.exr", "--camera", "above", "--size", "16x16", "-q", "--set",
-                      f"sun.illuminance={1000 * 4 ** k}")
+        self.write("ball.toml", parts_test.BALL)
 
     def outcome(self, name):
         """Output of the work; deletes it."""
@@ -54,7 +47,7 @@ class PartFaults(study_parts_test.StudyPartsCase):
             found = self.results("o")
             shutil.rmtree(self.folder / "o")
             return found
-        names = parts_test.OUTPUTS if name == "render" else parts_test.Sequences.OUTPUTS
+        names = parts_test.OUTPUTS
         found = {file: (self.folder / file).read_bytes() for file in names}
         shutil.rmtree(self.folder / WORKS[name][1], ignore_errors=True)
         for file in names:

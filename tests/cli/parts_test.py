@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures and sequences in parts: the bytes of one process, for any order, number and fate of the
+"""Pictures in parts: the bytes of one process, for any order, number and fate of the
 parts."""
 import json
 import os
@@ -14,7 +14,6 @@ import unittest
 import exr
 import program
 from program import BALL, Case
-from tiny_bay import SMALL_MONITOR
 
 # Pixels whose samples depend on their neighbours, on no other pixel, or on the whole picture.
 WAYS = {
@@ -74,18 +73,6 @@ class SameBytes(PartCase):
                     self.assertEqual(self.merged(), whole)
                     shutil.rmtree(self.folder / "v.exr.parts")
 
-    def test_a_picture_that_is_steered_is_one_piece(self):
-        # Rounds of samples depend on the error of the whole picture: rows alone would get other
-        # rounds.
-        way = ("--error", "0.05", "--camera", "A", "-o", "v.exr")
-        self.done("render", "ball.toml", *way, "-q")
-        whole = (self.folder / "v.exr").read_bytes()
-        for part in (3, 1, 2):
-            self.done("render", "ball.toml", *way, "--part", f"{part}/3", "-q")
-        self.assertEqual(len(list((self.folder / "v.exr.parts").glob("*.exr"))), 1)
-        self.done("merge", "v.exr.parts", "-q")
-        self.assertEqual((self.folder / "v.exr").read_bytes(), whole)
-
     def test_folders_that_were_copied_or_renamed(self):
         whole = self.whole()
         for part in (1, 2):
@@ -123,18 +110,16 @@ class SameBytes(PartCase):
                 del report[key]
         self.assertEqual(merged, whole)
 
-    def test_shares_are_rows_that_fill_the_pictures(self):
-        # 24 rows of A, then 20 of above: 44 rows in 3 parts are 14, 15 and 15.
-        for part in (1, 2, 3):
+    def test_shares_are_cameras(self):
+        # Two cameras in 3 parts: 0, 1 and 1.
+        self.says(self.run_program(*CALL, "--part", "1/3").stderr, "fewer cameras than parts")
+        for part, camera in ((2, "A"), (3, "above")):
+            before = set((self.folder / "v.exr.parts").glob("*.exr"))
             self.done(*CALL, "--part", f"{part}/3", "-q")
-        windows = []
-        for path in (self.folder / "v.exr.parts").glob("*.exr"):
-            window = json.loads(path.with_suffix(".json").read_text())["facts"]["window"]
-            header, *_ = exr.read(path)
-            self.assertEqual(struct.unpack("<iiii", header["dataWindow"]),
-                             (window[0], window[1], window[0] + window[2] - 1, window[1] + window[3] - 1))
-            windows.append((window[2], window[1], window[3]))
-        self.assertEqual(sorted(windows), [(20, 0, 5), (20, 5, 15), (32, 0, 14), (32, 14, 10)])
+            (piece,) = set((self.folder / "v.exr.parts").glob("*.exr")) - before
+            header, *_ = exr.read(piece)
+            columns, rows = {"A": (32, 24), "above": (20, 20)}[camera]
+            self.assertEqual(struct.unpack("<iiii", header["dataWindow"]), (0, 0, columns - 1, rows - 1))
 
     def test_a_job_array_says_which_part(self):
         whole = self.whole()
@@ -183,64 +168,14 @@ class SameBytes(PartCase):
         self.assertEqual(self.merged(), self.whole())
 
 
-class Sequences(PartCase):
-    """degrade: frames of a camera with memory of previous frames, and of a camera without."""
-    CALL = ("degrade", "0.exr", "1.exr", "2.exr", "-o", "f#.png", "--twin", "t#.exr", "--scene", "ball.toml",
-            "--f-number", "4")
-    FRAMES = 3
-    OUTPUTS = tuple(f"f{k}.png" for k in range(FRAMES)) + tuple(f"t{k}.exr" for k in range(FRAMES))
-
-    def setUp(self):
-        super().setUp()
-        self.cctv("iris_slew = 1.0\nlag = 0.4\n")
-        for k in range(self.FRAMES):
-            self.done("render", "ball.toml", "-o", f"{k}.exr", "--camera", "above", "--size", "16x16", "-q", "--set",
-                      f"sun.illuminance={1000 * 4 ** k}")
-
-    def cctv(self, settings):
-        table = f'\n[[cctv]]\nname = "slow"\n{settings}\n' + SMALL_MONITOR
-        self.write("ball.toml", BALL.replace('name = "above"', 'name = "above"\ncctv = "slow"') + table)
-
-    def test_any_order_and_number(self):
-        for settings, more in (("iris_slew = 1.0\nlag = 0.4\n", ()), ("interlace = true\n", ("--seed", "3"))):
-            self.cctv(settings)
-            call = (*(self.CALL if not more else self.CALL[:-2]), *more)
-            report = json.loads(self.done(*call, "--json"))
-            whole = self.taken(self.OUTPUTS)
-            for count in (1, 2, 3, 7):
-                with self.subTest(settings, parts=count):
-                    for part in range(count, 0, -1):
-                        self.done(*call, "--part", f"{part}/{count}", "-q", "-j", 1 + part % 2)
-                    self.assertEqual(json.loads(self.done("merge", "f#.png.parts", "--json", "-q")), report)
-                    self.assertEqual(self.taken(self.OUTPUTS), whole)
-                    shutil.rmtree(self.folder / "f#.png.parts")
-
-    def test_missing_torn_and_changed(self):
-        self.done(*self.CALL, "--part", "1/2", "-q")
-        self.says(self.refused("merge", "f#.png.parts", code=1), "frame 1 and 1 more", "--part 2/2")
-        self.done(*self.CALL, "--part", "2/2", "-q")
-        self.done("merge", "f#.png.parts", "-q")
-        whole = self.bytes_of(self.OUTPUTS)
-        (self.folder / "t2.exr").write_bytes(whole["t2.exr"][:-1])
-        self.says(self.refused("merge", "f#.png.parts", code=1), "frame 2", "--part 2/2")
-        self.done(*self.CALL, "--part", "2/2", "-q")
-        self.done("merge", "f#.png.parts", "-q")
-        self.assertEqual(self.bytes_of(self.OUTPUTS), whole)
-        self.says(self.run_program(*self.CALL, "--part", "2/2").stderr, "part 2 of 2: nothing to do")
-        (self.folder / "2.exr").write_bytes((self.folder / "0.exr").read_bytes())
-        self.says(self.refused(*self.CALL, "--part", "2/2"), "the pictures changed")
-        self.says(self.refused(*self.CALL, "--part", "solve"), "no solution")
-
-
 class Faults(PartCase):
     def test_what_is_missing_is_listed_with_its_command(self):
         self.done(*CALL, "--set", "camera.A.fov_deg=30 ", "--part", "2/3", "-q")
         message = self.refused("merge", "v.exr.parts", code=1)
-        self.says(message, "not complete", "camera A, rows 0 to 13", "--part 1/3", "--part 3/3", "'camera.A.fov_deg=30 '")
+        self.says(message, "not complete", "camera above", "--part 3/3", "'camera.A.fov_deg=30 '")
         self.assertNotIn("--part 2/3", message)
         self.assertFalse((self.folder / "v-A.exr").exists())
-        for part in (1, 3):
-            self.done(*CALL, "--set", "camera.A.fov_deg=30 ", "--part", f"{part}/3", "-q")
+        self.done(*CALL, "--set", "camera.A.fov_deg=30 ", "--part", "3/3", "-q")
         self.assertEqual(self.merged(), self.whole("--set", "camera.A.fov_deg=30 "))
 
     def test_a_part_of_another_scene_or_setting(self):
