@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// node check.mjs PAGE.html EXPECTED.json [FOLDER]: opens a console's page in headless Chromium and compares its
+// node check.mjs PAGE.html EXPECTED.json ORBIT.html [FOLDER]: opens a console's page in headless Chromium and compares its
 // pictures with the program's (tests/cli/console_browser.py writes EXPECTED.json); keyboard, link, undo, axe.
 // Screenshots go to FOLDER. Exit code 0 all well, 1 something is wrong, 77 there is no browser or no node_modules.
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
@@ -22,7 +22,7 @@ try {
 }
 const axeText = readFileSync(modules.resolve("axe-core/axe.min.js"), "utf8");
 
-const [pageFile, expectedFile, folder] = process.argv.slice(2);
+const [pageFile, expectedFile, orbitFile, folder] = process.argv.slice(2);
 if (folder) mkdirSync(folder, { recursive: true });
 const expected = JSON.parse(readFileSync(expectedFile, "utf8"));
 let faults = 0;
@@ -35,7 +35,7 @@ const check = (holds, what, found = "") => {
 const browser = await chromium.launch({
   executablePath: browserPath, args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
 });
-const open = async ({ fragment = "", withoutGpu = false, ...options } = {}) => {
+const open = async ({ fragment = "", withoutGpu = false, file = pageFile, ...options } = {}) => {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
   const page = await context.newPage();
   const complaints = [];
@@ -57,7 +57,7 @@ const open = async ({ fragment = "", withoutGpu = false, ...options } = {}) => {
     });
   }
   const start = Date.now();
-  await page.goto(`${pathToFileURL(resolve(pageFile)).href}${fragment ? `#${fragment}` : ""}`);
+  await page.goto(`${pathToFileURL(resolve(file)).href}${fragment ? `#${fragment}` : ""}`);
   await page.waitForFunction(() => /ms$/.test(document.getElementById("stamp").textContent));
   return { page, context, complaints, seconds: (Date.now() - start) / 1000 };
 };
@@ -115,17 +115,34 @@ const checkMonitor = async (page) => {
   }
 };
 
-const checkTargets = async (page) => {
-  for (const { text, targets } of expected.targets) {
+// The page's sums are of half floats: a mean is off by at most 2^-11, so that a contrast C is off by 2^-10 (1 + |C|).
+// A verdict may differ only where a probability is within what such a contrast changes it by, and that is said.
+const checkVerdicts = async () => {
+  const { page, context } = await open({ file: orbitFile });
+  const counts = {}, worst = { luminance: 0, weber: 0, snr: 0, snr_d: 0, chance: 0 };
+  let settings = 0, near = 0, wrong = 0;
+  for (const { text, targets } of expected.verdicts) {
     const found = await page.evaluate((state) => globalThis.earthshineConsole.targets(state), text);
-    for (const { name, luminance, weber } of targets) {
-      const own = found.find((target) => target.name === name);
-      const off = luminance === null ? (own.luminance === undefined ? 0 : 1) : Math.abs(own.luminance / luminance - 1);
-      const offWeber = weber === null ? 0 : Math.abs(own.weber - weber);
-      check(off < 1e-3 && offWeber < 2e-3 * (1 + Math.abs(weber ?? 0)), `target ${name} ${text}: luminance and contrast are the study's`,
-        `${off.toPrecision(2)} ${offWeber.toPrecision(2)}`);
+    ++settings;
+    for (const row of targets) {
+      const own = found.find((target) => target.name === row.name);
+      counts[row.verdict] = (counts[row.verdict] ?? 0) + 1;
+      const off = (value, wanted) => (wanted === null ? 0 : wanted === 0 ? Math.abs(value) : Math.abs(value / wanted - 1));
+      if (row.luminance) worst.luminance = Math.max(worst.luminance, off(own.luminance, row.luminance));
+      if (row.weber !== null && row.weber !== undefined) worst.weber = Math.max(worst.weber, Math.abs(own.weber - row.weber) / (1 + Math.abs(row.weber)));
+      if (row.snr) worst.snr = Math.max(worst.snr, off(own.snr, row.snr));
+      const distance = row.chances && own.chances ? Math.max(...row.chances.map((p, k) => Math.abs(p - own.chances[k]))) : row.chances || own.chances ? 1 : 0;
+      worst.chance = Math.max(worst.chance, distance);
+      if (row.chances && !own.chances) console.log(`      ${text} ${row.name}: no probability`);
+      if (own.verdict === row.verdict) continue;
+      const isNear = distance < 0.02 && row.chances.some((p) => [0.1, 0.5].some((threshold) => Math.abs(p - threshold) < 0.02));
+      if (isNear) ++near;
+      else ++wrong;
+      console.log(`${isNear ? "near " : "FAULT"} ${row.name} ${text}: ${own.verdict} for ${row.verdict}, ${own.chances} for ${row.chances}`);
     }
   }
+  check(wrong === 0, `verdicts of the study at ${settings} settings`, `${JSON.stringify(counts)}, ${near} within rounding of a threshold; worst ${JSON.stringify(worst)}`);
+  await context.close();
 };
 
 const axe = async (page, what) => {
@@ -198,7 +215,6 @@ const checkPictures = async () => {
   await page.evaluate(inPage);
   await checkClean(page, true);
   await checkMonitor(page);
-  await checkTargets(page);
   const words = await page.evaluate((states) => states.map((text) => globalThis.earthshineConsole.words(text)), expected.words);
   if (expected.words_file) writeFileSync(expected.words_file, JSON.stringify(words));
   await context.close();
@@ -210,6 +226,7 @@ const checkPictures = async () => {
 };
 
 await checkPictures();
+await checkVerdicts();
 await checkUse();
 await checkLooks("dark", { colorScheme: "dark" });
 await checkLooks("light", { colorScheme: "light", fragment: "view=monitor" });

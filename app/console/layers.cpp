@@ -145,8 +145,9 @@ void draw_views(const StudyPart& part, const std::string& folder, const Common& 
     view.relative_noise = frame->relative_noise;
     view.seconds = frame->seconds;
     view.layers = layers_of(part, frame->image);
-    view.objects = studies::object_map(frame->image);
-    view.targets = studies::find_targets(part.basis->scene(), *camera.camera, view.objects);
+    studies::ObjectMap map = studies::object_map(frame->image);
+    auto targets = studies::find_targets(part.basis->scene(), *camera.camera, map);
+    view.plan = studies::plan_sight(*camera.camera, std::move(map), std::move(targets));
     view.image = std::move(frame->image);
     take(std::move(view));
   }

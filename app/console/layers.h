@@ -11,7 +11,7 @@
 #include "app/study/study.h"
 #include "app/views/scene.h"
 #include "base/image.h"
-#include "studies/targets/target_view.h"
+#include "studies/sight/sight.h"
 
 namespace earthshine::app {
 
@@ -34,8 +34,7 @@ struct ConsoleView {
   double seconds = 0.0;
   base::Image image;  // as rendered, with a layer per light group
   std::vector<ConsoleLayer> layers;
-  studies::ObjectMap objects;
-  std::vector<studies::TargetView> targets;
+  studies::SightPlan plan;
 };
 
 // The call's scene with one light group per lamp, or with its own light groups if it has more than

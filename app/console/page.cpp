@@ -51,6 +51,23 @@ Json places_json(const StudyPart& part) {
   return places;
 }
 
+// The measures' constants, for the page's own verdicts.
+Json sight_json(const studies::SightOptions& options) {
+  return {{"eye_integration_s", options.eye_integration_s},
+          {"frame_s", options.frame_s},
+          {"even_chance_snr", options.even_chance_snr},
+          {"seen_probability", options.seen_probability},
+          {"doubtful_probability", options.doubtful_probability},
+          {"hidden_fraction", options.hidden_fraction},
+          {"most_black_back", options.most_black_back},
+          {"cycles",
+           {{"detect", options.cycles.detect},
+            {"recognise", options.cycles.recognise},
+            {"identify", options.cycles.identify}}},
+          {"slope", options.eye.slope},
+          {"threshold_factor", options.eye.threshold_factor}};
+}
+
 }  // namespace
 
 ConsolePage::ConsolePage(const StudyPart& part, const StudyCall& call, std::string layers_folder,
@@ -74,6 +91,7 @@ ConsolePage::ConsolePage(const StudyPart& part, const StudyCall& call, std::stri
       {"places", places_json(part)},
       {"objects", objects},
       {"presets", presets_json()},
+      {"sight", sight_json({})},
       {"cameras", Json::array()}};
 }
 
@@ -81,6 +99,30 @@ std::string ConsolePage::stored(const std::string& bytes) {
   if (bytes.empty()) return {};
   blobs_.push_back(base64(bytes));
   return fmt::format("b{}", blobs_.size() - 1);
+}
+
+Json ConsolePage::json_of(const studies::SightTarget& target) {
+  const studies::TargetView& view = target.view;
+  Json parts = Json::array();
+  for (const studies::SightTarget::Part& part : target.parts) {
+    parts.push_back({{"target", stored(pack_runs(part.target))},
+                     {"surround", stored(pack_runs(part.surround))},
+                     {"share", part.share}});
+  }
+  return {{"name", view.name},
+          {"object", view.object},
+          {"pixels", view.pixels},
+          {"alone", view.pixels_alone},
+          {"in_frame", view.in_frame},
+          {"black_back", view.black_back.size()},
+          {"motion", view.motion_px_s},
+          {"extent",
+           {{"pixels", target.extent.pixels},
+            {"direction_rad", target.extent.direction_rad},
+            {"angle_deg", target.extent.angle_deg}}},
+          {"measured", stored(pack_runs(view.measured))},
+          {"surround", stored(pack_runs(view.surround))},
+          {"parts", parts}};
 }
 
 void ConsolePage::add(const ConsoleView& view) {
@@ -93,15 +135,7 @@ void ConsolePage::add(const ConsoleView& view) {
                       {"exponent", packed.exponent},
                       {"data", stored(packed.bytes)}});
   }
-  for (const studies::TargetView& target : view.targets) {
-    targets.push_back({{"name", target.name},
-                       {"pixels", target.pixels},
-                       {"alone", target.pixels_alone},
-                       {"in_frame", target.in_frame},
-                       {"black_back", target.black_back.size()},
-                       {"measured", stored(pack_runs(target.measured))},
-                       {"surround", stored(pack_runs(target.surround))}});
-  }
+  for (const studies::SightTarget& target : view.plan.targets) targets.push_back(json_of(target));
   const CctvSetup cctv =
       view.camera->cctv ? *view.camera->cctv : cctv_of_camera(part_.loaded.scene, camera, common_);
   data_["cameras"].push_back(
@@ -113,7 +147,8 @@ void ConsolePage::add(const ConsoleView& view) {
        {"relative_noise", view.relative_noise},
        {"cctv", model_json(cctv.name, cctv.chain.camera, cctv.chain.monitor)},
        {"layers", layers},
-       {"objects", stored(pack_objects(view.objects.object))},
+       {"has_cctv", view.camera->cctv.has_value()},
+       {"objects", stored(pack_objects(view.plan.map.object))},
        {"targets", targets}});
 }
 

@@ -35,6 +35,7 @@ class ConsolePage {
  private:
   // Returns the name of the element that stores the bytes; empty for no bytes.
   [[nodiscard]] std::string stored(const std::string& bytes);
+  [[nodiscard]] Json json_of(const studies::SightTarget& target);
 
   const StudyPart& part_;
   const Common& common_;

@@ -92,19 +92,30 @@ const showMeter = (box, { monitor, tone }) => {
 };
 
 const signed = (value) => (value === undefined ? "–" : `${value < 0 ? "−" : "+"}${short(Math.abs(value) * 100, 2)} %`);
+const figuresText = ({ chances: p, snrD, onMonitor, threshold, lines, cycles }) => {
+  const words = [];
+  if (p) words.push(`probability ${p.map((value, k) => `${tasks[k]} ${value.toFixed(2)}`).join(", ")}`);
+  if (onMonitor !== undefined) words.push(`contrast on the monitor ${signed(onMonitor)}`);
+  if (threshold !== undefined) words.push(`least contrast that the eye sees ${signed(threshold).slice(1)}`);
+  if (snrD !== undefined) words.push(`SNR of the whole target in 0.2 s ${short(snrD, 2)}`);
+  if (lines !== undefined) words.push(`${short(lines, 2)} TV lines across it`);
+  if (cycles !== undefined) words.push(`${short(cycles, 2)} cycles resolved`);
+  return words.join("; ");
+};
 const showTargets = (box, figures) => {
   if (figures.length === 0) {
     box.textContent = "The scene marks no targets.";
     return;
   }
-  const head = make("tr", {}, ...["Target", "cd/m²", "Contrast", "SNR", "Estimate"].map((text) => make("th", { scope: "col", textContent: text })));
-  const rows = figures.map(({ name, luminance, weber, snr, snrD, verdict }) => {
+  const head = make("tr", {}, ...["Target", "cd/m²", "Contrast", "SNR", "Verdict"].map((text) => make("th", { scope: "col", textContent: text })));
+  const rows = figures.map((found) => {
+    const { name, luminance, weber, snr, verdict } = found;
     const bar = make("i", { className: "contrast" });
     bar.style.setProperty("--of", Math.max(-1, Math.min(1, weber ?? 0)));
-    return make("tr", { data: { verdict } }, make("th", { scope: "row", textContent: name }),
+    return make("tr", { data: { verdict }, title: figuresText(found) }, make("th", { scope: "row", textContent: name }),
       make("td", { textContent: luminance === undefined ? "–" : short(luminance, 2) }),
       make("td", {}, bar, signed(weber)),
-      make("td", { textContent: snr === undefined ? "–" : short(snr, 2), title: snrD === undefined ? "" : `SNR of the whole target in 0.2 s: ${short(snrD, 2)}` }),
+      make("td", { textContent: snr === undefined ? "–" : short(snr, 2) }),
       make("td", {}, make("b", { textContent: verdict })));
   });
   box.replaceChildren(make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows)));
