@@ -42,10 +42,13 @@ Json presets_json() {
 
 Json places_json(const StudyPart& part) {
   Json places = Json::array();
-  for (const ConditionEntry& condition : conditions_of(part)) {
+  std::vector<ConditionEntry> conditions = conditions_of(part);
+  conditions.resize(part.basis->places().size());  // of the first lamp setting
+  for (const ConditionEntry& condition : conditions) {
     places.push_back({{"position_deg", to_json(condition.position_deg)},
                       {"time_s", to_json(condition.time_s)},
-                      {"sun_share", to_json(condition.sun_share)},
+                      {"utc", condition.utc},
+                     {"sun_share", to_json(condition.sun_share)},
                       {"phase", condition.phase}});
   }
   return places;
@@ -70,8 +73,8 @@ Json sight_json(const studies::SightOptions& options) {
 
 }  // namespace
 
-ConsolePage::ConsolePage(const StudyPart& part, const StudyCall& call, std::string layers_folder,
-                         const Common& common)
+ConsolePage::ConsolePage(const StudyPart& part, const std::vector<std::string>& set,
+                         std::string layers_folder, const Common& common)
     : part_(part), common_(common) {
   Json lights = Json::array(), objects = Json::array();
   for (const ConsoleLight& light : console_lights(part)) {
@@ -79,19 +82,20 @@ ConsolePage::ConsolePage(const StudyPart& part, const StudyCall& call, std::stri
   }
   for (const scenes::Object& object : part.loaded.scene.objects) objects.push_back(object.name);
   std::error_code ignored;
-  const std::filesystem::path scene = std::filesystem::absolute(call.scene.path, ignored);
+  const std::filesystem::path scene = std::filesystem::absolute(part.path, ignored);
   data_ = {
       {"format", 1},
       {"version", EARTHSHINE_VERSION},
       {"scene", part.loaded.scene.name.empty() ? scene.stem().string() : part.loaded.scene.name},
       {"path", scene.lexically_normal().string()},
-      {"set", call.scene.overrides},
+      {"set", set},
       {"layers_folder", std::move(layers_folder)},
       {"lights", lights},
       {"places", places_json(part)},
       {"objects", objects},
       {"presets", presets_json()},
       {"sight", sight_json({})},
+      {"study", nullptr},
       {"cameras", Json::array()}};
 }
 
@@ -109,8 +113,11 @@ Json ConsolePage::json_of(const studies::SightTarget& target) {
                      {"surround", stored(pack_runs(part.surround))},
                      {"share", part.share}});
   }
+  Json hidden_by = Json::array();
+  for (const auto& blocker : view.hidden_by) hidden_by.push_back({blocker.object, blocker.pixels});
   return {{"name", view.name},
           {"object", view.object},
+          {"hidden_by", hidden_by},
           {"pixels", view.pixels},
           {"alone", view.pixels_alone},
           {"in_frame", view.in_frame},

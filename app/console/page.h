@@ -24,12 +24,14 @@ struct PageParts {
 
 class ConsolePage {
  public:
-  // layers_folder: folder of the layers' EXR files, for the commands that the page shows; empty:
+  // set: changes of the scene's keys. layers_folder: folder of the layers' EXR files, for the commands that the page shows; empty:
   // none.
-  ConsolePage(const StudyPart& part, const StudyCall& call, std::string layers_folder,
+  ConsolePage(const StudyPart& part, const std::vector<std::string>& set, std::string layers_folder,
               const Common& common);
 
   void add(const ConsoleView& view);
+  // Lamp settings and verdicts of a finished study (app/console/study_folder.h).
+  void add_study(Json study) { data_["study"] = std::move(study); }
   [[nodiscard]] std::string html() const;
 
  private:

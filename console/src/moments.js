@@ -132,10 +132,15 @@ const momentsThrough = (map, mean, sigma) => {
 };
 
 const tableSpacing = 0.2, tableLogSpacing = 0.1; // in mean / sigma, and in ln sigma
-const lagrange = (t) => {
-  const a = t + 2, b = t + 1, c = t, d = t - 1, e = t - 2, f = t - 3;
-  return [(-b * c * d * e * f) / 120, (a * c * d * e * f) / 24, (-a * b * d * e * f) / 12, (a * b * c * e * f) / 12,
-    (-a * b * c * d * f) / 24, (a * b * c * d * e) / 120];
+// Lagrange's weights of the nodes -2 to 3 at t in [0, 1].
+const lagrange = (t, into) => {
+  const a = t + 2, b = t + 1, d = t - 1, e = t - 2, f = t - 3, ab = a * b, td = t * d, ef = e * f;
+  into[0] = (-b * td * ef) / 120;
+  into[1] = (a * td * ef) / 24;
+  into[2] = (-ab * d * ef) / 12;
+  into[3] = (ab * t * ef) / 12;
+  into[4] = (-ab * td * f) / 24;
+  into[5] = (ab * td * e) / 120;
 };
 
 // Moments at nodes of mean / sigma and ln sigma where that saves time; interpolated by polynomials of degree 5.
@@ -163,34 +168,39 @@ const momentTable = (map, means, variances) => {
     }
   }
   for (const row of rows.values()) {
-    row.at = Array.from({ length: row.last - row.first + 1 }, (_, i) => {
-      const [m, v, s] = momentsThrough(map, (row.first + i) * tableSpacing * row.sigma, row.sigma);
-      return [m, v, s];
-    });
+    row.at = new Float64Array(3 * (row.last - row.first + 1));
+    for (let i = 0; 3 * i < row.at.length; ++i) {
+      row.at.set(momentsThrough(map, (row.first + i) * tableSpacing * row.sigma, row.sigma), 3 * i);
+    }
   }
+  const across = new Float64Array(6), along = new Float64Array(6), all = [0, 0, 0];
   return (mean, sigma) => {
     const logSigma = Math.log(sigma) / tableLogSpacing, level = Math.floor(logSigma);
     if (!levels.has(level)) return null;
-    const across = lagrange(logSigma - level), all = [0, 0, 0];
+    lagrange(logSigma - level, across);
+    let [m, v, s] = [0, 0, 0];
     for (let j = 0; j < 6; ++j) {
-      const row = rows.get(level - 2 + j), place = mean / (tableSpacing * row.sigma), node = Math.floor(place);
-      const along = lagrange(place - node);
-      for (let k = 0; k < 6; ++k) {
-        const at = row.at[node - 2 - row.first + k], weight = across[j] * along[k];
-        for (let m = 0; m < 3; ++m) all[m] += weight * at[m];
+      const { at, sigma: ofRow, first } = rows.get(level - 2 + j), place = mean / (tableSpacing * ofRow), node = Math.floor(place);
+      lagrange(place - node, along);
+      for (let k = 0, i = 3 * (node - 2 - first); k < 6; ++k, i += 3) {
+        const weight = across[j] * along[k];
+        m += weight * at[i];
+        v += weight * at[i + 1];
+        s += weight * at[i + 2];
       }
     }
-    all[2] = Math.max(all[2], 0);
-    all[1] = Math.max(all[1], (all[2] * sigma) ** 2);
+    s = Math.max(s, 0); // the polynomial may overshoot
+    [all[0], all[1], all[2]] = [m, Math.max(v, (s * sigma) ** 2), s];
     return all;
   };
 };
 
-// Of each mean and variance: [mean, variance, slope].
+// Of each mean and variance: planes of means, variances and slopes.
 const momentsOfAll = (map, means, variances) => {
-  const table = momentTable(map, means, variances);
-  return Array.from(means, (mean, i) => {
-    const sigma = Math.sqrt(Math.max(0, variances[i]));
-    return (sigma > 0 ? table(mean, sigma) : null) ?? momentsThrough(map, mean, sigma);
-  });
+  const table = momentTable(map, means, variances), found = [0, 1, 2].map(() => new Float32Array(means.length));
+  for (let i = 0; i < means.length; ++i) {
+    const sigma = Math.sqrt(Math.max(0, variances[i])), all = (sigma > 0 ? table(means[i], sigma) : null) ?? momentsThrough(map, means[i], sigma);
+    for (let k = 0; k < 3; ++k) found[k][i] = all[k];
+  }
+  return found;
 };

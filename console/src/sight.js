@@ -2,7 +2,16 @@
 // How well a viewer sees each target, as studies/sight/: on the monitor of the camera's CCTV, or by eye. The verdicts
 // are the study's; docs/console.md says how far the numbers agree. Undefined: the value does not exist.
 const mostSnr = 1e6;
-const options = data.sight;
+let options = data.sight;
+// f() with some of the measures' constants changed.
+const withOptions = (changed, f) => {
+  options = { ...data.sight, ...changed };
+  try {
+    return f();
+  } finally {
+    options = data.sight;
+  }
+};
 
 // Target transfer probability function of the Night Vision Laboratory.
 const johnsonProbability = (cycles, needed) => {
@@ -170,29 +179,33 @@ const verdictOf = (target, { share, chances: p }) => {
 const isByEye = (of) =>
   !data.cameras[of.camera].has_cctv && !of.model && Object.keys({ ...of.camera_set, ...of.monitor_set }).length === 0;
 
-const targetFigures = (light, of) => {
-  const { view, luminance } = light, model = modelOf(of), byEye = isByEye(of);
-  const mean = Math.max(0, luminance.reduce((sum, y) => sum + y, 0) / view.count), seen = view.targets.filter((target) => target.pixels > 0);
+// Figures of the targets for which `wanted` holds. model: null for the eye.
+const measureTargets = (light, model, wanted) => {
+  const { view, luminance } = light, targets = view.targets.filter(wanted), seen = targets.filter((target) => target.pixels > 0);
+  const mean = Math.max(0, luminance.reduce((sum, y) => sum + y, 0) / view.count);
   let line = null, moments = null;
-  if (!byEye && seen.length > 0) {
+  if (model && seen.length > 0) {
     line = passThrough(sensorLight(light, model), model, view.camera.fov_deg);
     const sets = seen.map((target) => reselsOf(target, view, line, model)), count = line.columns * line.rows;
     moments = momentsAt(line, unionOf(sets.flatMap((set) => [set.seen, set.surround]), count),
       unionOf(sets.flatMap((set) => [set.measuredScreen, set.surroundScreen]), count),
       Math.max(1, Math.round(options.eye_integration_s / options.frame_s)));
   }
-  return view.targets.map((target) => {
-    const found = { name: target.name, share: target.alone ? target.pixels / target.alone : undefined };
+  return targets.map((target) => {
+    const found = { name: target.name, share: target.alone ? target.pixels / target.alone : undefined, exposure: line?.exposure };
     if (target.pixels > 0) {
       found.luminance = meanOver(luminance, target.measured);
       if (target.surround.length > 0) {
         found.surround = meanOver(luminance, target.surround);
         found.weber = weberOf(found.luminance, found.surround);
-        if (byEye) seeByEye(found, target, luminance, mean);
+        if (!model) seeByEye(found, target, luminance, mean);
       }
-      if (!byEye) seeOnMonitor(found, target, reselsOf(target, view, line, model), moments, line, view, model);
+      if (model) seeOnMonitor(found, target, reselsOf(target, view, line, model), moments, line, view, model);
     }
     found.verdict = verdictOf(target, found);
     return found;
   });
 };
+
+const viewerOf = (of) => (isByEye(of) ? null : modelOf(of));
+const targetFigures = (light, of) => measureTargets(light, viewerOf(of), () => true);

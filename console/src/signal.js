@@ -204,15 +204,17 @@ const momentsAt = (line, resels, screen, frames) => {
         lightInTime * grain + (taps * line.amplifier) / frames + pattern];
     };
     const through = (map, at) => momentsOfAll(map, Float32Array.from(at, (i) => plane.signal[i]), Float32Array.from(at, (i) => scatter(i)[0]));
-    through(line.line, resels).forEach(([mean, variance, rise], i) => {
-      const resel = resels[i], [frame, inTime] = scatter(resel), beyond = Math.max(0, variance - rise * rise * frame);
-      found.mean[resel] += share * mean;
-      found.variance[resel] += share2 * variance;
-      found.varianceInTime[resel] += share2 * (rise * rise * inTime + beyond / frames);
+    const [mean, variance, rise] = through(line.line, resels);
+    resels.forEach((resel, i) => {
+      const [frame, inTime] = scatter(resel), power = rise[i] * rise[i], beyond = Math.max(0, variance[i] - power * frame);
+      found.mean[resel] += share * mean[i];
+      found.variance[resel] += share2 * variance[i];
+      found.varianceInTime[resel] += share2 * (power * inTime + beyond / frames);
       found.beyond[resel] += share2 * beyond;
-      slope[resel] = rise;
+      slope[resel] = rise[i];
     });
-    through(line.screen, screen).forEach(([mean], i) => { found.luminance[screen[i]] += share * mean; });
+    const [light] = through(line.screen, screen);
+    screen.forEach((resel, i) => { found.luminance[resel] += share * light[i]; });
     found.slope.push(slope);
   });
   return found;

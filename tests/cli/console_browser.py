@@ -123,33 +123,42 @@ def verdicts(bench, draw, presets):
     """Verdicts and figures of `study run` at random settings of lamps, Sun, Earth, place and camera, in the page's words."""
     cases = []
     for k, (preset, settings) in enumerate(MODELS):
-        lamps, wanted = [], []
+        camera, place, lamps, wanted = "BAAABAAA"[k], k % len(POSITIONS), [], []
         for n in range(SETTINGS):
             # Log-uniform over five decades, so that targets lie on both sides of all thresholds.
-            factors = {light: 0 if draw.random() < 0.2 else float(f"{4 * 10 ** draw.uniform(-5, 0):.4g}") for light in LIGHTS}
-            lamps.append(f'[[lamps]]\nname = "s{n}"\nset = {{ {", ".join(f"{light} = {factor}" for light, factor in factors.items())} }}\n')
-            wanted.append((factors, draw.randrange(len(POSITIONS))))
+            wanted.append({light: 0 if draw.random() < 0.2 else float(f"{4 * 10 ** draw.uniform(-5, 0):.4g}") for light in LIGHTS})
+            lamps.append(f'[[lamps]]\nname = "s{n}"\nset = {{ {", ".join(f"{light} = {factor}" for light, factor in wanted[n].items())} }}\n')
         monitor = next(entry["monitor"] for entry in presets if entry["name"] == preset)
-        eye = 'B = "none"\n' if k == 0 else 'B = "own"\n'
+        by_eye = k == 0  # B has no CCTV of its own
         (bench.folder / "v.toml").write_text(
-            f'format = 1\nname = "v"\nscene = "bay.toml"\nsize = "48x48"\n[orbit]\npositions_deg = {list(POSITIONS)}\n' + "\n".join(lamps) +
-            f'\n[[cctv]]\nname = "own"\npreset = "{preset}"\n{toml(settings)}\n[monitor]\n{toml(monitor)}\n[camera_models]\nA = "own"\n{eye}'
-            '\n[[picture]]\nname = "one"\ncamera = "A"\n', encoding="utf-8")
+            f'format = 1\nname = "v"\nscene = "bay.toml"\ncameras = ["{camera}"]\nsize = "48x48"\n' + "\n".join(lamps) +
+            f'\n[[cctv]]\nname = "own"\npreset = "{preset}"\n{toml(settings)}\n[monitor]\n{toml(monitor)}\n[camera_models]\n'
+            f'{camera} = "{"none" if by_eye else "own"}"\n[orbit]\npositions_deg = [{POSITIONS[place]}]\n', encoding="utf-8")
         bench.run("study", "run", "v.toml", "-o", "verdicts", "-q")
         study = study_table.opened(json.loads((bench.folder / "verdicts" / "study.json").read_text(encoding="utf-8")))
-        conditions = {entry["id"]: (entry["lamps"], entry["position_deg"]) for entry in study["conditions"]}
-        found = {(row["camera"], *conditions[row["condition"]], row["target"]): row for row in study["results"]}
-        for n, (factors, place) in enumerate(wanted):
-            for camera in "AB":
-                own = f"&model={preset}&" + "&".join(f"c.{name}={value}" for name, value in settings.items())
-                rows = {target: row for (of, lamp, at, target), row in found.items() if (of, lamp, at) == (camera, f"s{n}", POSITIONS[place])}
-                cases.append({"text": f"camera={camera}&place={place}&" + "&".join(f"l.{light}={factor}" for light, factor in factors.items()) +
-                                      ("" if camera == "B" and k == 0 else own),
-                              "targets": [{"name": target, "verdict": row["verdict"], "luminance": row.get("luminance"), "weber": row.get("weber"),
-                                           "chances": list(row["probability"].values()) if row.get("probability") else None,
-                                           **{name: (row.get("signal") or {}).get(name) for name in ("snr", "snr_d")}}
-                                          for target, row in rows.items()]})
+        lamp_of = {entry["id"]: entry["lamps"] for entry in study["conditions"]}
+        for n, factors in enumerate(wanted):
+            own = "" if by_eye else f"&model={preset}&" + "&".join(f"c.{name}={value}" for name, value in settings.items())
+            cases.append({"text": f"camera={camera}&place={place}&" + "&".join(f"l.{light}={factor}" for light, factor in factors.items()) + own,
+                          "targets": [{"name": row["target"], "verdict": row["verdict"], "luminance": row.get("luminance"), "weber": row.get("weber"),
+                                       "chances": list(row["probability"].values()) if row.get("probability") else None,
+                                       "reasons": row["reasons"] if n < 4 and row["why_of"] is None else [],
+                                       **{name: (row.get("signal") or {}).get(name) for name in ("snr", "snr_d")}}
+                                      for row in study["results"] if lamp_of[row["condition"]] == f"s{n}"]})
     return cases
+
+
+def of_study(bench):
+    """A study along the orbit, and its console: verdicts at each stop."""
+    bench.run("study", "orbit", "bay.toml", "--at", ",".join(map(str, POSITIONS)), "--size", "48x48", "-o", "orbit", "-q")
+    bench.run("console", "orbit", "-o", "study.html", "-q")
+    study = study_table.opened(json.loads((bench.folder / "orbit" / "study.json").read_text(encoding="utf-8")))
+    place_of = {entry["id"]: POSITIONS.index(entry["position_deg"]) for entry in study["conditions"]}
+    return [{"text": f"camera={camera}&place={place}",
+             "targets": [{"name": row["target"], "verdict": row["verdict"], "luminance": row.get("luminance"), "weber": row.get("weber"), "reasons": [],
+                          "chances": list(row["probability"].values()) if row.get("probability") else None}
+                         for row in study["results"] if (row["camera"], place_of[row["condition"]]) == (camera, place)]}
+            for camera in "AB" for place in range(len(POSITIONS))]
 
 
 def main():
@@ -166,10 +175,11 @@ def main():
         bench.run("console", "bay.toml", "-o", "orbit.html", "--positions", str(len(POSITIONS)), "-q")
         presets = page_data(bench.folder / "orbit.html")["presets"]
         words = ["camera=A", "camera=A&l.left=0.5&t.right=%23ff8000", "camera=A&view=monitor&c.iris=fixed&c.f_number=8&m.gamma=2", "camera=A&white=50"]
-        expected = {"cameras": 2, "patience": 5, "clean": clean(bench, draw, 3), "monitor": monitor(bench, draw), "verdicts": verdicts(bench, draw, presets),
+        expected = {"cameras": 2, "patience": 5, "clean": clean(bench, draw, 3), "monitor": monitor(bench, draw), "verdicts": [{"page": str(bench.folder / "orbit.html"), "cases": verdicts(bench, draw, presets)},
+                                 {"page": str(bench.folder / "study.html"), "cases": of_study(bench)}],
                     "words": words, "words_file": str(bench.folder / "words.json")}
         (bench.folder / "expected.json").write_text(json.dumps(expected), encoding="utf-8")
-        code = subprocess.run([node, TOP / "console" / "check.mjs", bench.folder / "console.html", bench.folder / "expected.json", bench.folder / "orbit.html", *out]).returncode
+        code = subprocess.run([node, TOP / "console" / "check.mjs", bench.folder / "console.html", bench.folder / "expected.json", *out]).returncode
         if code != 0:
             return code
         for said in json.loads((bench.folder / "words.json").read_text(encoding="utf-8")):
