@@ -10,6 +10,7 @@
 #include "app/command.h"
 #include "app/console/layers.h"
 #include "app/console/page.h"
+#include "app/console/serve.h"
 #include "app/console/study_folder.h"
 #include "app/options.h"
 #include "app/output.h"
@@ -25,8 +26,8 @@ namespace fs = std::filesystem;
 struct ConsoleCall {
   StudyCall study;
   std::string output = "console.html", layers;
-  std::uint64_t positions = 0;
-  bool json = false;
+  std::uint64_t positions = 0, port = 0;
+  bool json = false, serve = false;
 };
 
 // Folder of finished pictures, so that a second call with other controls draws nothing.
@@ -80,6 +81,16 @@ std::unique_ptr<StudyPart> part_of(const Source& source, const Common& common) {
   }
   if (source.finished) check_unchanged(*source.finished, *parts.front());
   return std::move(parts.front());
+}
+
+// Options that decide what a page has do not go with a server, which writes none.
+void serve_scene(const ConsoleCall& call, const CLI::App& parser, const Common& common) {
+  for (const char* option : {"--output", "--camera", "--size", "--positions", "--layers", "--json"}) {
+    if (parser.count(option) == 0) continue;
+    throw base::Error(base::Blame::Input, option, "does not go with --serve", {},
+                      "Leave it out: the live preview writes no file");
+  }
+  serve(call.study.scene, static_cast<int>(call.port), common);
 }
 
 void run(const ConsoleCall& call, const Common& given) {
@@ -161,7 +172,15 @@ Command add_console(CLI::App& program) {
       ->add_option("--layers", call->layers, "Folder for each camera's layers as EXR, for relight")
       ->type_name("DIR");
   parser->add_flag("--json", call->json, "Report as JSON on standard output");
-  return {parser, [call](const Common& common) { run(*call, common); }};
+  parser->add_flag("--serve", call->serve,
+                   can_serve() ? "Live preview at an address of this machine, until Ctrl-C"
+                               : "Not in this build: it needs libcpp-httplib-dev");
+  add_whole_number(*parser, "--port", call->port, 1024, 65535,
+                   "Port of --serve (default: a free one)");
+  return {parser, [call, parser](const Common& common) {
+            if (call->serve) return serve_scene(*call, *parser, common);
+            run(*call, common);
+          }};
 }
 
 }  // namespace earthshine::app

@@ -161,14 +161,14 @@ void ConsolePage::add(const ConsoleView& view) {
 
 std::string page_of(const PageParts& parts, const Json& data,
                     const std::vector<std::string>& blobs) {
-  // Nothing may be loaded, and only the program's own script may run.
+  // Nothing else may be loaded, and only the program's own script may run.
   std::string page = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-      "style-src 'unsafe-inline'; script-src '{}'; base-uri 'none'; form-action 'none'\">\n"
+      "style-src 'unsafe-inline'; script-src '{}';{} base-uri 'none'; form-action 'none'\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n{}",
-      parts.script_hash, escaped(parts.title), parts.style, parts.body);
+      parts.script_hash, parts.connects ? " connect-src 'self';" : "", escaped(parts.title), parts.style, parts.body);
   page += fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n", island(data));
   for (std::size_t k = 0; k < blobs.size(); ++k) {
     page += fmt::format("<script type=\"text/plain\" id=\"b{}\">{}</script>\n", k, blobs[k]);

@@ -17,6 +17,7 @@ inline constexpr std::size_t most_page_bytes = 30'000'000;
 struct PageParts {
   std::string title, style;
   std::string_view body, script, script_hash;
+  bool connects = false;  // to the server that gave the page; otherwise to nothing
 };
 // blobs: base64, in elements "b0", "b1" ... of the page.
 [[nodiscard]] std::string page_of(const PageParts& parts, const Json& data,
