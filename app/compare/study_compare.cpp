@@ -199,12 +199,16 @@ Json plan_of(const CompareCall& call, const Common& common, const LoadedScene& l
   const double solve = 9.0 * (studies::total_seconds(pilot.bill) - drawn);
   seconds += solve;
   const double limit = call.time_limit_s;
-  return {
-      {"study", "compare"},         {"dry_run", true},
-      {"scene", call.scene.path},   {"camera", camera.name},
-      {"columns", options.columns}, {"rows", options.rows},
-      {"error", options.error},     {"solve_seconds", solve},
-      {"methods", listed},          {"seconds", limit > 0.0 ? std::max(solve, std::min(limit, seconds)) : seconds}};
+  return {{"study", "compare"},
+          {"dry_run", true},
+          {"scene", call.scene.path},
+          {"camera", camera.name},
+          {"columns", options.columns},
+          {"rows", options.rows},
+          {"error", options.error},
+          {"solve_seconds", solve},
+          {"methods", listed},
+          {"seconds", limit > 0.0 ? std::max(solve, std::min(limit, seconds)) : seconds}};
 }
 
 std::string plan_text(const Json& plan) {

@@ -85,7 +85,8 @@ std::unique_ptr<StudyPart> part_of(const Source& source, const Common& common) {
 
 // Options that decide what a page has do not go with a server, which writes none.
 void serve_scene(const ConsoleCall& call, const CLI::App& parser, const Common& common) {
-  for (const char* option : {"--output", "--camera", "--size", "--positions", "--layers", "--json"}) {
+  for (const char* option :
+       {"--output", "--camera", "--size", "--positions", "--layers", "--json"}) {
     if (parser.count(option) == 0) continue;
     throw base::Error(base::Blame::Input, option, "does not go with --serve", {},
                       "Leave it out: the live preview writes no file");
@@ -157,8 +158,9 @@ void run(const ConsoleCall& call, const Common& given) {
 }  // namespace
 
 Command add_console(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand(
-      "console", "A page on which to turn the lamps, the Sun and the cameras of a scene or of a finished study");
+  CLI::App* parser = program.add_subcommand("console",
+                                            "A page on which to turn the lamps, the Sun and the "
+                                            "cameras of a scene or of a finished study");
   const auto call = std::make_shared<ConsoleCall>();
   add_scene_options(*parser, call->study.scene);
   parser->get_option("SCENE")->description("Scene file (TOML), or the folder of a finished study");

@@ -50,8 +50,7 @@ std::vector<double> numbers_of(const Json& value, const std::string& key, std::s
 }
 
 Vec3 vector_of(const Json& view, const char* key) {
-  const std::vector<double> v =
-      numbers_of(view.value(key, Json()), std::string("view.") + key, 3);
+  const std::vector<double> v = numbers_of(view.value(key, Json()), std::string("view.") + key, 3);
   return {v[0], v[1], v[2]};
 }
 
@@ -161,7 +160,8 @@ LiveRequest read_live_request(std::string_view text) {
   if (!camera.is_string()) refuse("camera", "is no text", "the name of a camera");
   request.camera = camera.get<std::string>();
   constexpr int least = 16, most = 1024;
-  if (json.contains("columns")) request.size.columns = whole_of(json["columns"], "columns", least, most);
+  if (json.contains("columns"))
+    request.size.columns = whole_of(json["columns"], "columns", least, most);
   if (json.contains("rows")) request.size.rows = whole_of(json["rows"], "rows", least, most);
   if (json.contains("view")) request.view = view_of(json["view"]);
   if (json.contains("level")) {
@@ -184,6 +184,7 @@ LiveScene::LiveScene(const SceneInput& input, const Common& common)
   scene_.set(own_set_);
   scene_.read();
   cameras_ = scene_.loaded.scene.cameras;
+  lamps_ = scene_.loaded.scene.lamps;
   movables_ = movables();
 }
 
@@ -203,9 +204,16 @@ std::vector<LiveScene::Movable> LiveScene::movables() const {
       if (text == nullptr || (value == nullptr && std::string_view(table) == "light")) continue;
       std::vector<double> numbers =
           value ? numbers_in(value->node) : std::vector<double>(count, 0.0);
-      if (numbers.size() == count) {
-        found.push_back({fmt::format("{}.{}.{}", table, *text, key), std::move(numbers)});
-      }
+      if (numbers.size() != count) continue;
+      Movable& one = found.emplace_back(fmt::format("{}.{}.{}", table, *text, key), numbers);
+      const auto lamp = std::ranges::find(lamps_, *text, &scenes::Lamp::name);
+      const bool hangs = scenes::find_entry(keys, "aim") || scenes::find_entry(keys, "joint");
+      if (std::string_view(table) != "light" || lamp == lamps_.end() || hangs) continue;
+      const Vec3 as_written(numbers[0], numbers[1], numbers[2]);
+      const double unit_m = glm::length(lamp->position) / glm::length(as_written);
+      if (!(glm::distance(unit_m * as_written, lamp->position) <= 1e-9 * unit_m)) continue;
+      one.lamp = static_cast<std::size_t>(lamp - lamps_.begin());
+      one.unit_m = unit_m;
     }
   }
   return found;
@@ -231,6 +239,25 @@ Json LiveScene::describe() {
           {"level_errors", level_errors}};
 }
 
+bool LiveScene::move_lamps(const LiveRequest& request) {
+  if (!scene_.is_read) return false;
+  const auto value_in = [](const Set& set, const Movable& one) {
+    const auto found = std::ranges::find(set, one.key, &Set::value_type::first);
+    return found == set.end() ? one.value : found->second;
+  };
+  for (const Movable& one : movables_) {
+    if (value_in(request.set, one) != value_in(read_set_, one) && !one.lamp) return false;
+  }
+  for (const Movable& one : movables_) {
+    const std::vector<double> value = value_in(request.set, one);
+    if (value == value_in(read_set_, one)) continue;
+    scene_.loaded.scene.lamps[*one.lamp].position =
+        one.unit_m * Vec3(value[0], value[1], value[2]);
+    lamps_moved_ = true;
+  }
+  return true;
+}
+
 void LiveScene::apply(const LiveRequest& request) {
   std::vector<std::string> changes = own_set_;
   for (const auto& [key, value] : request.set) {
@@ -240,12 +267,18 @@ void LiveScene::apply(const LiveRequest& request) {
     changes.push_back(value.size() == 1 ? fmt::format("{}={}", key, value.front())
                                         : fmt::format("{}=[{}]", key, fmt::join(value, ", ")));
   }
-  scene_.set(std::move(changes));
-  if (!scene_.is_read) {
-    scene_.read();
-    cameras_ = scene_.loaded.scene.cameras;
+  lamps_moved_ = false;
+  if (scene_.is_read) {
+    scene_.loaded.scene.cameras = cameras_;
+    scene_.loaded.scene.lamps = lamps_;
   }
-  scene_.loaded.scene.cameras = cameras_;
+  if (request.level > 0 || !move_lamps(request)) {
+    scene_.set(std::move(changes));
+    scene_.read();
+    read_set_ = request.set;
+    cameras_ = scene_.loaded.scene.cameras;
+    lamps_ = scene_.loaded.scene.lamps;
+  }
   const auto found =
       std::ranges::find(scene_.loaded.scene.cameras, request.camera, &scenes::Camera::name);
   if (found == scene_.loaded.scene.cameras.end()) {
@@ -260,7 +293,7 @@ void LiveScene::apply(const LiveRequest& request) {
 
 base::Image LiveScene::at_once(const RenderCall& call, const scenes::Camera& camera,
                                const Size& size, Json& head) {
-  const bool same_light = light_ && light_overrides_ == scene_.overrides;
+  const bool same_light = light_ && light_overrides_ == scene_.overrides && !lamps_moved_;
   if (same_light) {
     head["kind"] = "patches";
     return raytrace::preview(scene_.loaded.world(*scene_.query), light_->solution,
@@ -280,9 +313,7 @@ base::Image LiveScene::at_once(const RenderCall& call, const scenes::Camera& cam
   const RenderContext context{small, common_, scene_.loaded, *scene_.query,
                               same_patches ? *light_ : none};
   head["kind"] = "samples";
-  return draw_frame(context, camera,
-                    picture_options(small, common_, scene_.loaded, camera))
-      .image;
+  return draw_frame(context, camera, picture_options(small, common_, scene_.loaded, camera)).image;
 }
 
 base::Image LiveScene::sampled(RenderCall& call, const scenes::Camera& camera, std::size_t level,
@@ -321,9 +352,8 @@ std::optional<std::string> LiveScene::draw(const LiveRequest& request) {
   const double error = level_errors[request.level == 0 ? 0 : request.level - 1];
   scene_.prepare(call, cameras, true, error);
   Json head = {{"level", request.level}, {"error", nullptr}};
-  base::Image image = request.level == 0
-                          ? at_once(call, *cameras.front(), request.size, head)
-                          : sampled(call, *cameras.front(), request.level, head);
+  base::Image image = request.level == 0 ? at_once(call, *cameras.front(), request.size, head)
+                                         : sampled(call, *cameras.front(), request.level, head);
   if (Interrupt::asked() || image.channels.empty()) return std::nullopt;
   head["columns"] = image.width;
   head["rows"] = image.height;

@@ -24,7 +24,7 @@ struct LiveRequest {
   Size size{256, 256};
   std::optional<View> view;
   std::vector<std::pair<std::string, std::vector<double>>> set;  // "light.NAME.position": 3 numbers
-  std::size_t level = 0;  // 0: at once
+  std::size_t level = 0;                                         // 0: at once
 };
 // Throws base::Error (Input) for text that is not JSON, unknown keys, and values of another type,
 // number or range.
@@ -47,10 +47,16 @@ class LiveScene {
   struct Movable {
     std::string key;
     std::vector<double> value;
+    // A lamp without an aim or a joint: its position alone changes. Unit of `value`, m.
+    std::optional<std::size_t> lamp = {};
+    double unit_m = 0.0;
   };
   // Those of the scene's own file.
   [[nodiscard]] std::vector<Movable> movables() const;
   void apply(const LiveRequest& request);
+  // Moves lamps in the loaded scene and returns true if nothing else differs from it; level 0 need
+  // not read the scene again for them.
+  [[nodiscard]] bool move_lamps(const LiveRequest& request);
   [[nodiscard]] base::Image at_once(const RenderCall& call, const scenes::Camera& camera,
                                     const Size& size, Json& head);
   [[nodiscard]] base::Image sampled(RenderCall& call, const scenes::Camera& camera,
@@ -59,7 +65,11 @@ class LiveScene {
   Common common_;
   std::vector<std::string> own_set_;
   WarmScene scene_;
-  std::vector<scenes::Camera> cameras_;  // as in the file, with `set`
+  using Set = decltype(LiveRequest::set);
+  Set read_set_;                         // with which the scene was read
+  std::vector<scenes::Camera> cameras_;  // } as read
+  std::vector<scenes::Lamp> lamps_;      // }
+  bool lamps_moved_ = false;             // since then
   std::vector<Movable> movables_;
   std::optional<Solved> light_;  // the latest, of `light_overrides_`
   std::vector<std::string> light_overrides_;

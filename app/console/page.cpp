@@ -48,7 +48,7 @@ Json places_json(const StudyPart& part) {
     places.push_back({{"position_deg", to_json(condition.position_deg)},
                       {"time_s", to_json(condition.time_s)},
                       {"utc", condition.utc},
-                     {"sun_share", to_json(condition.sun_share)},
+                      {"sun_share", to_json(condition.sun_share)},
                       {"phase", condition.phase}});
   }
   return places;
@@ -168,7 +168,8 @@ std::string page_of(const PageParts& parts, const Json& data,
       "style-src 'unsafe-inline'; script-src '{}';{} base-uri 'none'; form-action 'none'\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n{}",
-      parts.script_hash, parts.connects ? " connect-src 'self';" : "", escaped(parts.title), parts.style, parts.body);
+      parts.script_hash, parts.connects ? " connect-src 'self';" : "", escaped(parts.title),
+      parts.style, parts.body);
   page += fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n", island(data));
   for (std::size_t k = 0; k < blobs.size(); ++k) {
     page += fmt::format("<script type=\"text/plain\" id=\"b{}\">{}</script>\n", k, blobs[k]);

@@ -82,8 +82,8 @@ class Server {
 
   [[nodiscard]] int bind(int port) {
     const char* host = "127.0.0.1";
-    const int bound = port == 0 ? server_.bind_to_any_port(host)
-                                : (server_.bind_to_port(host, port) ? port : -1);
+    const int bound =
+        port == 0 ? server_.bind_to_any_port(host) : (server_.bind_to_port(host, port) ? port : -1);
     if (bound <= 0) {
       throw base::Error(base::Blame::Input, "--port", fmt::format("{} is not free", port), {},
                         "Name another, or leave it out for a free one");

@@ -75,8 +75,8 @@ Json factors_json(const StudyPart& part, std::size_t setting) {
       if (const auto found = named.find(light.name); found != named.end()) factor = found->second;
     } else if (light.kind != "ambient") {
       const auto& names = basis.groups().names;
-      factor = weights[static_cast<std::size_t>(std::ranges::find(names, light.name) -
-                                                names.begin())];
+      factor =
+          weights[static_cast<std::size_t>(std::ranges::find(names, light.name) - names.begin())];
     }
     factors.push_back({factor.r, factor.g, factor.b});
   }
@@ -149,7 +149,8 @@ Json study_json(const FinishedStudy& finished, const StudyPart& part) {
       list.push_back({std::string(studies::word_of(result.sight.verdict)), result.why});
     }
   }
-  return {{"folder", finished.folder}, {"places", places}, {"settings", settings}, {"judged", judged}};
+  return {
+      {"folder", finished.folder}, {"places", places}, {"settings", settings}, {"judged", judged}};
 }
 
 }  // namespace earthshine::app

@@ -20,8 +20,8 @@ void WarmScene::set(std::vector<std::string> changes) {
 
 void WarmScene::read() {
   if (is_read) return;
-  scenes::Scene scene = text ? scenes::read_scene_text(*text, path, overrides)
-                             : scenes::read_scene(path, overrides);
+  scenes::Scene scene =
+      text ? scenes::read_scene_text(*text, path, overrides) : scenes::read_scene(path, overrides);
   loaded = check_scene(std::move(scene));
   ++reads;
   is_read = true;
@@ -42,7 +42,7 @@ void WarmScene::read() {
 }
 
 void WarmScene::prepare(const RenderCall& call, const std::vector<const scenes::Camera*>& cameras,
-             bool draws, std::optional<double> error) {
+                        bool draws, std::optional<double> error) {
   loaded.scene.quality = quality;
   if (error) loaded.scene.quality.error = error;
   loaded.scene.warnings = warnings;

@@ -20,8 +20,8 @@ struct WarmScene {
   std::optional<std::string> text;     // of a scene without a file; meshes are relative to `path`
   std::vector<std::string> overrides;  // requested
   bool is_read = false;
-  LoadedScene loaded;         // with `overrides`, once read
-  scenes::Quality quality;    // } of the file: calls may set their own
+  LoadedScene loaded;       // with `overrides`, once read
+  scenes::Quality quality;  // } of the file: calls may set their own
   std::vector<std::string> warnings;
   std::optional<scenes::RayQuery> query;
   KeptLights lights;
