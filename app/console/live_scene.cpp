@@ -207,11 +207,20 @@ std::vector<LiveScene::Movable> LiveScene::movables() const {
       if (numbers.size() != count) continue;
       Movable& one = found.emplace_back(fmt::format("{}.{}.{}", table, *text, key), numbers);
       const auto lamp = std::ranges::find(lamps_, *text, &scenes::Lamp::name);
-      const bool hangs = scenes::find_entry(keys, "aim") || scenes::find_entry(keys, "joint");
-      if (std::string_view(table) != "light" || lamp == lamps_.end() || hangs) continue;
+      if (std::string_view(table) != "light" || lamp == lamps_.end() ||
+          scenes::find_entry(keys, "joint") ||
+          (lamp->kind != scenes::LampKind::Point && lamp->kind != scenes::LampKind::Spot)) {
+        continue;
+      }
       const Vec3 as_written(numbers[0], numbers[1], numbers[2]);
       const double unit_m = glm::length(lamp->position) / glm::length(as_written);
       if (!(glm::distance(unit_m * as_written, lamp->position) <= 1e-9 * unit_m)) continue;
+      if (lamp->kind == scenes::LampKind::Spot) {
+        const auto* aim = scenes::find_entry(keys, "aim");
+        const std::vector<double> at = aim ? numbers_in(aim->node) : std::vector<double>();
+        if (at.size() != 3) continue;
+        one.aim_m = unit_m * Vec3(at[0], at[1], at[2]);
+      }
       one.lamp = static_cast<std::size_t>(lamp - lamps_.begin());
       one.unit_m = unit_m;
     }
@@ -251,8 +260,13 @@ bool LiveScene::move_lamps(const LiveRequest& request) {
   for (const Movable& one : movables_) {
     const std::vector<double> value = value_in(request.set, one);
     if (value == value_in(read_set_, one)) continue;
-    scene_.loaded.scene.lamps[*one.lamp].position =
-        one.unit_m * Vec3(value[0], value[1], value[2]);
+    scenes::Lamp& lamp = scene_.loaded.scene.lamps[*one.lamp];
+    lamp.position = one.unit_m * Vec3(value[0], value[1], value[2]);
+    if (one.aim_m) {
+      const double distance = glm::distance(*one.aim_m, lamp.position);
+      if (!(distance > 0.0)) refuse("set." + one.key, "is the lamp's own aim", {});
+      lamp.axis = (*one.aim_m - lamp.position) / distance;
+    }
     lamps_moved_ = true;
   }
   return true;

@@ -47,9 +47,11 @@ class LiveScene {
   struct Movable {
     std::string key;
     std::vector<double> value;
-    // A lamp without an aim or a joint: its position alone changes. Unit of `value`, m.
+    // A point or a spot that hangs on no joint: its position and axis alone change. Unit of
+    // `value`, m; of a spot the point that it keeps aiming at, m.
     std::optional<std::size_t> lamp = {};
     double unit_m = 0.0;
+    std::optional<Vec3> aim_m = {};
   };
   // Those of the scene's own file.
   [[nodiscard]] std::vector<Movable> movables() const;

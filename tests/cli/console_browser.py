@@ -7,6 +7,7 @@ usage: console_browser.py PROGRAM [OUT]    screenshots go to OUT
 Exit code 77 without a browser, Node.js or report/node_modules.
 """
 import base64
+import itertools
 import json
 import os
 import pathlib
@@ -112,7 +113,7 @@ POSITIONS = (0, 180)
 MODELS = (("sit-monochrome", {"iris": "peak"}), ("sit-monochrome", {"iris": "fixed", "f_number": 4}), ("sit-colour-wheel", {"iris": "average"}),
           ("ccd-colour", {"iris": "normal"}), ("ccd-colour", {"iris": "fixed", "f_number": 11, "gain_db": 20}), ("report-1990", {"iris": "normal"}),
           ("ideal", {"iris": "peak"}), ("sit-monochrome", {"iris": "normal", "gain_max_db": 6}))
-SETTINGS = 25  # of the lamps for each model: 200 in all
+SETTINGS = 13  # of the lamps for each model, at each place: 208 in all
 
 
 def toml(settings):
@@ -120,10 +121,10 @@ def toml(settings):
 
 
 def verdicts(bench, draw, presets):
-    """Verdicts and figures of `study run` at random settings of lamps, Sun, Earth, place and camera, in the page's words."""
+    """Verdicts and figures of `study run` at random settings of lamps, Sun and Earth, for each camera model and place, in the page's words."""
     cases = []
     for k, (preset, settings) in enumerate(MODELS):
-        camera, place, lamps, wanted = "BAAABAAA"[k], (k + k // 4) % len(POSITIONS), [], []
+        camera, lamps, wanted = "BAAABAAA"[k], [], []
         for n in range(SETTINGS):
             # Log-uniform over five decades, so that targets lie on both sides of all thresholds.
             wanted.append({light: 0 if draw.random() < 0.2 else float(f"{4 * 10 ** draw.uniform(-5, 0):.4g}") for light in LIGHTS})
@@ -136,16 +137,15 @@ def verdicts(bench, draw, presets):
             f'{camera} = "{"none" if by_eye else "own"}"\n[orbit]\npositions_deg = {list(POSITIONS)}\n', encoding="utf-8")
         bench.run("study", "run", "v.toml", "-o", "verdicts", "-q")
         study = study_table.opened(json.loads((bench.folder / "verdicts" / "study.json").read_text(encoding="utf-8")))
-        # Conditions of the page's places: with other ones, the study's picture would have other samples.
-        lamp_of = {entry["id"]: entry["lamps"] for entry in study["conditions"] if entry["position_deg"] == POSITIONS[place]}
-        for n, factors in enumerate(wanted):
+        condition = {entry["id"]: (entry["lamps"], entry["position_deg"]) for entry in study["conditions"]}
+        for n, place in itertools.product(range(SETTINGS), range(len(POSITIONS))):
             own = "" if by_eye else f"&model={preset}&" + "&".join(f"c.{name}={value}" for name, value in settings.items())
-            cases.append({"text": f"camera={camera}&place={place}&" + "&".join(f"l.{light}={factor}" for light, factor in factors.items()) + own,
+            cases.append({"text": f"camera={camera}&place={place}&" + "&".join(f"l.{light}={factor}" for light, factor in wanted[n].items()) + own,
                           "targets": [{"name": row["target"], "verdict": row["verdict"], "luminance": row.get("luminance"), "weber": row.get("weber"),
                                        "chances": list(row["probability"].values()) if row.get("probability") else None,
-                                       "reasons": row["reasons"] if n < 4 and row["why_of"] is None else [],
+                                       "reasons": row["reasons"] if n < 3 and row["why_of"] is None else [],
                                        **{name: (row.get("signal") or {}).get(name) for name in ("snr", "snr_d")}}
-                                      for row in study["results"] if lamp_of.get(row["condition"]) == f"s{n}"]})
+                                      for row in study["results"] if condition[row["condition"]] == (f"s{n}", POSITIONS[place])]})
     return cases
 
 
