@@ -33,10 +33,10 @@ const std::array<Group, 7>& groups() {
          "off"}},
        {"Parallel runs", {"part", "wait", "ranks", "images"}},
        {"Options", {}},
-       {"Output",
-        {"output",   "png",   "range",   "report",   "aov",           "per-light", "timings",
-         "json",     "csv",   "glb",     "twin",     "target-resels", "stages",    "list",
-         "describe", "plain", "dry-run", "exposure", "curve",         "layers"}},
+       {"Output", {"output",  "png",    "range",    "report", "aov",     "per-light",
+                   "timings", "json",   "csv",      "glb",    "twin",    "target-resels",
+                   "stages",  "list",   "describe", "plain",  "dry-run", "exposure",
+                   "curve",   "layers", "serve",    "port"}},
        {"General", {"threads", "seed", "max-memory", "quiet", "help", "version"}}}};
   return all;
 }

@@ -35,7 +35,7 @@ const check = (holds, what, found = "") => {
 const browser = await chromium.launch({
   executablePath: browserPath, args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
 });
-const open = async ({ fragment = "", withoutGpu = false, ...options } = {}) => {
+const open = async ({ fragment = "", withoutGpu = false, file = pageFile, ...options } = {}) => {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
   const page = await context.newPage();
   const complaints = [];
@@ -57,7 +57,7 @@ const open = async ({ fragment = "", withoutGpu = false, ...options } = {}) => {
     });
   }
   const start = Date.now();
-  await page.goto(`${pathToFileURL(resolve(pageFile)).href}${fragment ? `#${fragment}` : ""}`);
+  await page.goto(`${pathToFileURL(resolve(file)).href}${fragment ? `#${fragment}` : ""}`);
   await page.waitForFunction(() => /ms$/.test(document.getElementById("stamp").textContent));
   return { page, context, complaints, seconds: (Date.now() - start) / 1000 };
 };
@@ -115,17 +115,64 @@ const checkMonitor = async (page) => {
   }
 };
 
-const checkTargets = async (page) => {
-  for (const { text, targets } of expected.targets) {
-    const found = await page.evaluate((state) => globalThis.earthshineConsole.targets(state), text);
-    for (const { name, luminance, weber } of targets) {
-      const own = found.find((target) => target.name === name);
-      const off = luminance === null ? (own.luminance === undefined ? 0 : 1) : Math.abs(own.luminance / luminance - 1);
-      const offWeber = weber === null ? 0 : Math.abs(own.weber - weber);
-      check(off < 1e-3 && offWeber < 2e-3 * (1 + Math.abs(weber ?? 0)), `target ${name} ${text}: luminance and contrast are the study's`,
-        `${off.toPrecision(2)} ${offWeber.toPrecision(2)}`);
+// A cause of the study that cures alone is in the page's words, with its probability; those that need the scene's
+// geometry are not the page's. At a contrast of 1 % the half floats change the difference by a tenth, and a probability
+// by up to 0.05.
+const causeWords = {
+  saturated: "saturated", lag: "tube's lag", blur: "blurred by", noise: "lost in noise", "room-light": "room's light",
+  contrast: "too little contrast", small: "too small",
+};
+const checkReasons = async (page, cases) => {
+  let agree = 0, differ = 0;
+  for (const { text, targets } of cases.filter((one) => one.targets.some(({ reasons }) => reasons.length > 0))) {
+    const found = new Map(await page.evaluate((state) => globalThis.earthshineConsole.reasons(state), text));
+    for (const { name, reasons, weber } of targets) {
+      for (const { cause, by, probability_without: p, text: reason } of reasons) {
+        const unlit = cause === "unlit" && /(switched off|dimmed)/.exec(reason);
+        const words = unlit ? `${by} ${unlit[0]}` : causeWords[cause];
+        if (!words || !(p >= 0.52) || (cause === "contrast" && Math.abs(weber) < 0.02)) continue;
+        const said = found.get(name).split("; ").filter((part, k, all) => part.includes(words) || all[k - 1]?.includes(words));
+        const isThere = said.some((part) => Math.abs(Number(/(\d\.\d+)$/.exec(part)?.[1]) - p) <= 0.05);
+        if (isThere) ++agree;
+        else ++differ;
+        if (!isThere) console.log(`      ${text} ${name}: ${reason}, the page says ${found.get(name)}`);
+      }
     }
   }
+  if (agree + differ > 0) check(differ === 0 && agree > 10, "reasons: the study's causes that cure alone, with their probability", `${agree} of ${agree + differ}`);
+};
+
+// The page's sums are of half floats: a mean is off by at most 2^-11, so that a contrast C is off by 2^-10 (1 + |C|).
+// A verdict may differ only where a probability is within what such a contrast changes it by, and that is said.
+const checkVerdicts = async ({ page: file, cases }) => {
+  const { page, context } = await open({ file });
+  const counts = {}, worst = { luminance: 0, weber: 0, snr: 0, snr_d: 0, chance: 0 };
+  let settings = 0, near = 0, wrong = 0;
+  for (const { text, targets } of cases) {
+    const found = await page.evaluate((state) => globalThis.earthshineConsole.targets(state), text);
+    ++settings;
+    for (const row of targets) {
+      const own = found.find((target) => target.name === row.name);
+      counts[row.verdict] = (counts[row.verdict] ?? 0) + 1;
+      const off = (value, wanted) => (wanted === null ? 0 : wanted === 0 ? Math.abs(value) : Math.abs(value / wanted - 1));
+      if (row.luminance) worst.luminance = Math.max(worst.luminance, off(own.luminance, row.luminance));
+      if (row.weber !== null && row.weber !== undefined) worst.weber = Math.max(worst.weber, Math.abs(own.weber - row.weber) / (1 + Math.abs(row.weber)));
+      // Below 1 the signal is a difference of small numbers.
+      if (row.snr > 1) worst.snr = Math.max(worst.snr, off(own.snr, row.snr));
+      if (row.snr_d > 1) worst.snr_d = Math.max(worst.snr_d, off(own.snrD, row.snr_d));
+      const distance = row.chances && own.chances ? Math.max(...row.chances.map((p, k) => Math.abs(p - own.chances[k]))) : row.chances || own.chances ? 1 : 0;
+      worst.chance = Math.max(worst.chance, distance);
+      if (row.chances && !own.chances) console.log(`      ${text} ${row.name}: no probability`);
+      if (own.verdict === row.verdict) continue;
+      const isNear = distance < 0.02 && row.chances.some((p) => [0.1, 0.5].some((threshold) => Math.abs(p - threshold) < 0.02));
+      if (isNear) ++near;
+      else ++wrong;
+      console.log(`${isNear ? "near " : "FAULT"} ${row.name} ${text}: ${own.verdict} for ${row.verdict}, ${own.chances} for ${row.chances}`);
+    }
+  }
+  await checkReasons(page, cases);
+  check(wrong === 0 && worst.luminance < 0.01 && worst.chance < 0.02, `verdicts of the study at ${settings} settings`, `${JSON.stringify(counts)}, ${near} within rounding of a threshold; worst ${JSON.stringify(worst)}`);
+  await context.close();
 };
 
 const axe = async (page, what) => {
@@ -198,7 +245,6 @@ const checkPictures = async () => {
   await page.evaluate(inPage);
   await checkClean(page, true);
   await checkMonitor(page);
-  await checkTargets(page);
   const words = await page.evaluate((states) => states.map((text) => globalThis.earthshineConsole.words(text)), expected.words);
   if (expected.words_file) writeFileSync(expected.words_file, JSON.stringify(words));
   await context.close();
@@ -210,10 +256,12 @@ const checkPictures = async () => {
 };
 
 await checkPictures();
+for (const one of expected.verdicts) await checkVerdicts(one);
 await checkUse();
 await checkLooks("dark", { colorScheme: "dark" });
 await checkLooks("light", { colorScheme: "light", fragment: "view=monitor" });
 await checkLooks("false-colours", { colorScheme: "dark", fragment: "top=2" });
+await checkLooks("study", { colorScheme: "light", file: expected.verdicts[1].page });
 await checkLooks("tablet", { colorScheme: "light", viewport: { width: 820, height: 1180 } });
 await browser.close();
 console.log(faults === 0 ? "all well" : `${faults} faults`);

@@ -14,16 +14,14 @@
 #include "app/render/draw.h"
 #include "app/render/effect_table.h"
 #include "app/render/error_json.h"
-#include "app/render/kept_lights.h"
 #include "app/render/light.h"
+#include "app/render/warm_scene.h"
 #include "app/tools/form_factors.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "python/request.h"
-#include "radiosity/store/solution_key.h"
 #include "raytrace/camera/camera.h"
 #include "scenes/health/crossings.h"
-#include "scenes/read/scene_file.h"
 
 namespace earthshine::python {
 
@@ -159,74 +157,16 @@ Json list_of(const List& list, Entry entry) {
   return all;
 }
 
-std::vector<std::uint64_t> digests_of(const std::vector<radiosity::ScenePart>& parts) {
-  std::vector<std::uint64_t> digests;
-  for (const radiosity::ScenePart& part : parts) digests.push_back(part.digest);
-  return digests;
-}
-
 }  // namespace
 
-struct Session::State {
-  std::string path;
-  std::optional<std::string> text;
-  std::vector<std::string> overrides;  // requested
-  bool is_read = false;
-  app::LoadedScene loaded;  // with `overrides`, once read
-  scenes::Quality quality;  // } of the file: calls may set their own
-  std::vector<std::string> warnings;
-  std::optional<scenes::RayQuery> query;
-  std::vector<std::uint64_t> shape;  // digests of what `query` depends on
-  std::map<std::string, std::vector<std::string>> view_warnings;  // by camera, of this scene
-  app::KeptLights lights;
-  std::size_t reads = 0, structures = 0, solves = 0, pictures = 0;
+struct Session::State : app::WarmScene {
+  std::size_t solves = 0, pictures = 0;
 
-  void read() {
-    if (is_read) return;
-    scenes::Scene scene = text ? scenes::read_scene_text(*text, path, overrides)
-                               : scenes::read_scene(path, overrides);
-    loaded = app::check_scene(std::move(scene));
-    ++reads;
-    is_read = true;
-    quality = loaded.scene.quality;
-    warnings = loaded.scene.warnings;
-    view_warnings.clear();
-    auto parts =
-        digests_of(radiosity::scene_parts(loaded.scene, scenes::find_light_groups(loaded.scene)));
-    parts.resize(2);  // geometry and materials
-    if (!query || parts != shape) {
-      query.reset();
-      query.emplace(loaded.scene);
-      shape = std::move(parts);
-      ++structures;
-    }
-  }
-
-  // Prepares the scene for a call: decides its effects, and checks its views as `render` does.
-  void prepare(const app::RenderCall& call, const std::vector<const scenes::Camera*>& cameras,
-               bool draws, std::optional<double> error) {
-    loaded.scene.quality = quality;
-    if (error) loaded.scene.quality.error = error;
-    loaded.scene.warnings = warnings;
-    app::decide_effects(loaded, app::wanted_effects(call, cameras));
-    if (cameras.size() != 1) return app::check_input(loaded, *query, {cameras}, true, draws);
-    const auto known = view_warnings.find(cameras.front()->name);
-    if (known != view_warnings.end()) {
-      loaded.scene.warnings.insert(loaded.scene.warnings.end(), known->second.begin(),
-                                   known->second.end());
-      return;
-    }
-    app::check_input(loaded, *query, {cameras}, true, draws);
-    const auto own = loaded.scene.warnings.begin() + static_cast<std::ptrdiff_t>(warnings.size());
-    view_warnings[cameras.front()->name] = {own, loaded.scene.warnings.end()};
-  }
-
-  const app::Solved& light_for(const app::RenderCall& call, const app::Common& common,
-                               app::StageTimes& times) {
-    const app::Solved& light = lights.take(
-        {call, common, loaded, *query, {}, [] { return app::Interrupt::asked(); }}, times);
+  const app::Solved& light(const app::RenderCall& call, const app::Common& common,
+                           app::StageTimes& times) {
+    const app::Solved& found = light_for(call, common, times);
     leave_if_asked();
-    return light;
+    return found;
   }
 };
 
@@ -239,9 +179,7 @@ Session::~Session() = default;
 
 void Session::set(std::vector<std::string> overrides) {
   const Turn turn;
-  if (overrides == state_->overrides) return;
-  state_->overrides = std::move(overrides);
-  state_->is_read = false;
+  state_->set(std::move(overrides));
 }
 
 std::string Session::describe() {
@@ -309,7 +247,7 @@ std::shared_ptr<Frame> Session::render(const std::string& request_text,
     given.solver = light->kept->solver;
     given.solved = true;
   }
-  const app::Solved& solved = light ? given : s.light_for(call, common, times);
+  const app::Solved& solved = light ? given : s.light(call, common, times);
   app::RenderContext context{call, common, s.loaded, *s.query, solved};
   if (call.time_limit_s > 0.0) {
     context.time_limit_s = std::max(1e-3, call.time_limit_s - times.total());

@@ -47,6 +47,7 @@ OWNERS = {
     "zlib": (r"zlib\.h", ["base/files/deflate.cpp"]),
     "libjpeg-turbo": (r"j(peglib|config|error|morecfg)\.h", ["base/pixels/jpeg_pixels.cpp"]),
     "tinygltf": (r"tiny_?gltf", ["scenes/mesh/gltf/*"]),
+    "cpp-httplib": (r"httplib\.h", ["app/console/serve.cpp"]),
     "HDF5": (r"(hdf5(_hl)?|H5\w*)\.h", ["base/files/hdf5_handle.h"]),
     "CLI11": (r"CLI/", ["app/*"]),
     "pybind11": (r"pybind11/|Python\.h", ["python/module.cpp"]),

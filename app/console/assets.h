@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pages of the console and of `view` without their data, from console/ by the build: no
+// The pages of the console, of its live preview and of `view` without their data, from console/ by the build: no
 // library, no Node.js.
 #pragma once
 
@@ -18,5 +18,11 @@ namespace earthshine::app {
 [[nodiscard]] std::string_view view_body();
 [[nodiscard]] std::string_view view_script();
 [[nodiscard]] std::string_view view_script_hash();
+
+// Of `console --serve`, also beside the console's style.
+[[nodiscard]] std::string_view live_style();
+[[nodiscard]] std::string_view live_body();
+[[nodiscard]] std::string_view live_script();
+[[nodiscard]] std::string_view live_script_hash();
 
 }  // namespace earthshine::app

@@ -10,6 +10,8 @@
 #include "app/command.h"
 #include "app/console/layers.h"
 #include "app/console/page.h"
+#include "app/console/serve.h"
+#include "app/console/study_folder.h"
 #include "app/options.h"
 #include "app/output.h"
 #include "base/error.h"
@@ -24,8 +26,8 @@ namespace fs = std::filesystem;
 struct ConsoleCall {
   StudyCall study;
   std::string output = "console.html", layers;
-  std::uint64_t positions = 0;
-  bool json = false;
+  std::uint64_t positions = 0, port = 0;
+  bool json = false, serve = false;
 };
 
 // Folder of finished pictures, so that a second call with other controls draws nothing.
@@ -45,29 +47,81 @@ void write_layers(const ConsoleCall& call, const StudyPart& part, const ConsoleV
       view.image, header);
 }
 
-void run(const ConsoleCall& call, const Common& common) {
+// What the page shows: a study made for it, or a finished one.
+struct Source {
+  studies::StudyFile study;
+  std::optional<FinishedStudy> finished;
+};
+
+Source source_of(const ConsoleCall& call) {
+  if (!is_study_folder(call.study.scene.path)) {
+    std::vector<double> positions;
+    if (call.positions > 0) positions = studies::even_positions(static_cast<int>(call.positions));
+    return {console_study(call.study, std::move(positions)), {}};
+  }
+  for (const auto& [given, option] : {std::pair(!call.study.scene.overrides.empty(), "--set"),
+                                      std::pair(call.study.size.has_value(), "--size"),
+                                      std::pair(call.positions > 0, "--positions")}) {
+    if (!given) continue;
+    throw base::Error(base::Blame::Input, option, "does not go with a study's folder", {},
+                      "The study has decided it: leave it out, or name the scene");
+  }
+  FinishedStudy finished = finished_study(call.study.scene.path, call.study.cameras);
+  studies::StudyFile study = finished.study;
+  return {std::move(study), std::move(finished)};
+}
+
+// The first scene of the source, in its first pose.
+std::unique_ptr<StudyPart> part_of(const Source& source, const Common& common) {
+  StudyParts parts = prepare_parts(source.study, 0, common);
+  const bool moves = source.finished && parts.size() > 1;
+  if (!common.quiet && (moves || source.study.scenes.size() > 1)) {
+    note(fmt::format("note: the study has several {}; the page shows the first",
+                     moves ? "poses" : "scenes"));
+  }
+  if (source.finished) check_unchanged(*source.finished, *parts.front());
+  return std::move(parts.front());
+}
+
+// Options that decide what a page has do not go with a server, which writes none.
+void serve_scene(const ConsoleCall& call, const CLI::App& parser, const Common& common) {
+  for (const char* option :
+       {"--output", "--camera", "--size", "--positions", "--layers", "--json"}) {
+    if (parser.count(option) == 0) continue;
+    throw base::Error(base::Blame::Input, option, "does not go with --serve", {},
+                      "Leave it out: the live preview writes no file");
+  }
+  serve(call.study.scene, static_cast<int>(call.port), common);
+}
+
+void run(const ConsoleCall& call, const Common& given) {
   if (!call.layers.empty() && call.positions > 0) {
     throw base::Error(base::Blame::Input, "--layers", "does not go with --positions", {},
                       "The layers of an orbit are not those of one picture: leave one of them out");
   }
-  std::vector<double> positions;
-  if (call.positions > 0) positions = studies::even_positions(static_cast<int>(call.positions));
-  const studies::StudyFile study = console_study(call.study, std::move(positions));
-  // Of a scene whose joints move: its first pose.
-  const std::unique_ptr<StudyPart> part = std::move(prepare_parts(study, 0, common).front());
+  const Source source = source_of(call);
+  Common common = given;
+  if (source.finished) common.seed = source.finished->seed;
+  const std::unique_ptr<StudyPart> part = part_of(source, common);
   check_outputs({call.output}, part->loaded.scene.files);
   refuse_other_kind("-o", call.output, {".html"});
+  if (!call.layers.empty() && part->basis->places().size() > 1) {
+    throw base::Error(base::Blame::Input, "--layers", "does not go with several places", {},
+                      "The layers of an orbit are not those of one picture: leave it out");
+  }
   if (!call.layers.empty()) {
     make_folder(call.layers);
     refuse_inputs_in(call.layers, part->loaded.scene.files);
   }
   const std::string store = store_beside(call.output);
-  make_folder(store);
-  ConsolePage page(*part, call.study, call.layers, common);
+  ConsolePage page(*part, source.study.overrides, call.layers, common);
+  if (source.finished) page.add_study(study_json(*source.finished, *part));
+  const std::string finished =
+      source.finished ? (fs::path(source.finished->folder) / points_folder).string() : "";
   Json cameras = Json::array();
   {
     const Interrupt interrupt;
-    draw_views(*part, store, common, [&](const ConsoleView& view) {
+    draw_views(*part, store, finished, common, [&](const ConsoleView& view) {
       if (!call.layers.empty()) write_layers(call, *part, view);
       page.add(view);
       cameras.push_back({{"camera", view.camera->camera->name},
@@ -104,10 +158,12 @@ void run(const ConsoleCall& call, const Common& common) {
 }  // namespace
 
 Command add_console(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand(
-      "console", "A page on which to turn the lamps, the Sun and the cameras of a scene");
+  CLI::App* parser = program.add_subcommand("console",
+                                            "A page on which to turn the lamps, the Sun and the "
+                                            "cameras of a scene or of a finished study");
   const auto call = std::make_shared<ConsoleCall>();
   add_scene_options(*parser, call->study.scene);
+  parser->get_option("SCENE")->description("Scene file (TOML), or the folder of a finished study");
   parser->add_option("-o,--output", call->output, "Page to write (default console.html)")
       ->type_name("FILE.html");
   add_cameras_option(*parser, call->study);
@@ -118,7 +174,15 @@ Command add_console(CLI::App& program) {
       ->add_option("--layers", call->layers, "Folder for each camera's layers as EXR, for relight")
       ->type_name("DIR");
   parser->add_flag("--json", call->json, "Report as JSON on standard output");
-  return {parser, [call](const Common& common) { run(*call, common); }};
+  parser->add_flag("--serve", call->serve,
+                   can_serve() ? "Live preview at an address of this machine, until Ctrl-C"
+                               : "Not in this build: it needs libcpp-httplib-dev");
+  add_whole_number(*parser, "--port", call->port, 1024, 65535,
+                   "Port of --serve (default: a free one)");
+  return {parser, [call, parser](const Common& common) {
+            if (call->serve) return serve_scene(*call, *parser, common);
+            run(*call, common);
+          }};
 }
 
 }  // namespace earthshine::app

@@ -83,10 +83,14 @@ std::vector<ConsoleLayer> layers_of(const StudyPart& part, const base::Image& im
     const bool sky = suns.has(g) || earth.has(g);
     if (!sky || !basis.in_parts()) take(weighted(image, names, ones, {g, 1}), names[g], {});
   }
+  // As in the scene: a lamp setting may dim both.
   for (std::size_t p = 0; basis.in_parts() && p < basis.places().size(); ++p) {
-    const std::vector<Rgb> weights = basis.weights(p, 0).weight;
-    if (suns.count > 0) take(weighted(image, names, weights, suns), "sun", p);
-    if (earth.count > 0) take(weighted(image, names, weights, earth), "earth", p);
+    if (suns.count > 0) {
+      take(weighted(image, names, basis.weights_with(p, 0, "sun").weight, suns), "sun", p);
+    }
+    if (earth.count > 0) {
+      take(weighted(image, names, basis.weights_with(p, 0, "earth").weight, earth), "earth", p);
+    }
   }
   return layers;
 }
@@ -128,14 +132,18 @@ std::vector<ConsoleLight> console_lights(const StudyPart& part) {
   return lights;
 }
 
-void draw_views(const StudyPart& part, const std::string& folder, const Common& common,
-                const std::function<void(ConsoleView)>& take) {
+void draw_views(const StudyPart& part, const std::string& folder, const std::string& other,
+                const Common& common, const std::function<void(ConsoleView)>& take) {
   const PartCall alone;
-  StudyFrames frames(part, folder, common, alone);
   std::vector<StudyCost> costs;
+  std::optional<StudyFrames> finished;
+  if (!other.empty()) finished.emplace(part, other, common, alone);
+  std::optional<StudyFrames> own;
   for (const StudyCamera& camera : part.cameras) {
+    const bool known = finished && finished->has(camera);
+    if (!known && !own) own.emplace(part, folder, common, alone);
     std::optional<StudyFrames::Frame> frame;
-    if (!Interrupt::asked()) frame = frames.frame(camera, costs);
+    if (!Interrupt::asked()) frame = (known ? *finished : *own).frame(camera, costs);
     if (!frame) {
       throw base::Error(base::Blame::Work, "console", "interrupted", {},
                         "Run the same command again: finished cameras are in " + folder);
@@ -145,8 +153,9 @@ void draw_views(const StudyPart& part, const std::string& folder, const Common& 
     view.relative_noise = frame->relative_noise;
     view.seconds = frame->seconds;
     view.layers = layers_of(part, frame->image);
-    view.objects = studies::object_map(frame->image);
-    view.targets = studies::find_targets(part.basis->scene(), *camera.camera, view.objects);
+    studies::ObjectMap map = studies::object_map(frame->image);
+    auto targets = studies::find_targets(part.basis->scene(), *camera.camera, map);
+    view.plan = studies::plan_sight(*camera.camera, std::move(map), std::move(targets));
     view.image = std::move(frame->image);
     take(std::move(view));
   }

@@ -11,7 +11,7 @@
 #include "app/study/study.h"
 #include "app/views/scene.h"
 #include "base/image.h"
-#include "studies/targets/target_view.h"
+#include "studies/sight/sight.h"
 
 namespace earthshine::app {
 
@@ -34,8 +34,7 @@ struct ConsoleView {
   double seconds = 0.0;
   base::Image image;  // as rendered, with a layer per light group
   std::vector<ConsoleLayer> layers;
-  studies::ObjectMap objects;
-  std::vector<studies::TargetView> targets;
+  studies::SightPlan plan;
 };
 
 // The call's scene with one light group per lamp, or with its own light groups if it has more than
@@ -46,9 +45,9 @@ inline constexpr std::size_t most_faders = 48;
 
 [[nodiscard]] std::vector<ConsoleLight> console_lights(const StudyPart& part);
 
-// Renders every camera of the part in turn; `folder` stores finished pictures (StudyFrames). Throws
-// base::Error (Work) if interrupted.
-void draw_views(const StudyPart& part, const std::string& folder, const Common& common,
-                const std::function<void(ConsoleView)>& take);
+// Renders every camera of the part in turn; `folder` stores finished pictures (StudyFrames), `other`
+// may have more of them, from a study (empty: none). Throws base::Error (Work) if interrupted.
+void draw_views(const StudyPart& part, const std::string& folder, const std::string& other,
+                const Common& common, const std::function<void(ConsoleView)>& take);
 
 }  // namespace earthshine::app

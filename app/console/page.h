@@ -17,6 +17,7 @@ inline constexpr std::size_t most_page_bytes = 30'000'000;
 struct PageParts {
   std::string title, style;
   std::string_view body, script, script_hash;
+  bool connects = false;  // to the server that gave the page; otherwise to nothing
 };
 // blobs: base64, in elements "b0", "b1" ... of the page.
 [[nodiscard]] std::string page_of(const PageParts& parts, const Json& data,
@@ -24,17 +25,20 @@ struct PageParts {
 
 class ConsolePage {
  public:
-  // layers_folder: folder of the layers' EXR files, for the commands that the page shows; empty:
+  // set: changes of the scene's keys. layers_folder: folder of the layers' EXR files, for the commands that the page shows; empty:
   // none.
-  ConsolePage(const StudyPart& part, const StudyCall& call, std::string layers_folder,
+  ConsolePage(const StudyPart& part, const std::vector<std::string>& set, std::string layers_folder,
               const Common& common);
 
   void add(const ConsoleView& view);
+  // Lamp settings and verdicts of a finished study (app/console/study_folder.h).
+  void add_study(Json study) { data_["study"] = std::move(study); }
   [[nodiscard]] std::string html() const;
 
  private:
   // Returns the name of the element that stores the bytes; empty for no bytes.
   [[nodiscard]] std::string stored(const std::string& bytes);
+  [[nodiscard]] Json json_of(const studies::SightTarget& target);
 
   const StudyPart& part_;
   const Common& common_;

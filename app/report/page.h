@@ -17,6 +17,9 @@ struct ReportOptions {
   bool quiet = false;  // no note on standard error if the program lacks the script
 };
 
+// The results in folder/study.json. Throws base::Error (Input) if the file is missing or damaged.
+[[nodiscard]] StudyResults read_study(const std::filesystem::path& folder);
+
 // Writes folder/report.html (a temporary file, renamed) from the study's results. Its pictures are
 // read from `folder` and embedded. All content is HTML; the script, if the program contains it,
 // adds plots, sliders, sorting and filters. Throws base::Error (Input) if a picture is missing,

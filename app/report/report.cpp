@@ -21,6 +21,8 @@ struct ReportCall {
   bool plain = false;
 };
 
+}  // namespace
+
 StudyResults read_study(const fs::path& folder) {
   const std::string name = (folder / study_file).string();
   std::error_code why, other;
@@ -33,11 +35,8 @@ StudyResults read_study(const fs::path& folder) {
                 "a study's folder has this file",
                 "Name the folder given as -o to study visibility, orbit or run");
   }
-  check_outputs({(folder / report_file).string()}, {name});
   return read_results(name, read_json(name, "Run the study again, which writes the file anew"));
 }
-
-}  // namespace
 
 Command add_report(CLI::App& program) {
   CLI::App* parser = program.add_subcommand(
@@ -46,7 +45,10 @@ Command add_report(CLI::App& program) {
   parser->add_option("DIR", call->folder, "The study's folder")->type_name("")->required();
   parser->add_flag("--plain", call->plain, "Without the script: no plots, no sliders");
   return {parser, [call](const Common& common) {
-            write_report(call->folder, read_study(call->folder), {call->plain, common.quiet});
+            const fs::path folder = call->folder;
+            const StudyResults study = read_study(folder);
+            check_outputs({(folder / report_file).string()}, {(folder / study_file).string()});
+            write_report(folder, study, {call->plain, common.quiet});
           }};
 }
 

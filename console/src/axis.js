@@ -101,12 +101,19 @@ const lineFilter = known(function lineFilter(size, bandwidth, correction, screen
   return symmetricFilter(size, taps);
 });
 
-// Complementary error function to 1.2e-7 (Press et al., Numerical Recipes, 6.2).
+// Complementary error function: the series of erf with positive terms below 2, beyond it Laplace's continued fraction.
 const erfc = (x) => {
-  const z = Math.abs(x), t = 1 / (1 + 0.5 * z);
-  const coefficients = [-1.26551223, 1.00002368, 0.37409196, 0.09678418, -0.18628806, 0.27886807, -1.13520398,
-    1.48851587, -0.82215223, 0.17087277];
-  const r = t * Math.exp(-z * z + coefficients.reduceRight((sum, c) => sum * t + c, 0));
+  const z = Math.abs(x), bell = Math.exp(-z * z) / Math.sqrt(Math.PI);
+  let r;
+  if (z < 2) {
+    let sum = 0;
+    for (let n = 0, term = 2 * z; term > 1e-17 * sum; ++n, term *= (2 * z * z) / (2 * n + 1)) sum += term;
+    r = 1 - bell * sum;
+  } else {
+    let fraction = z;
+    for (let n = 60; n > 0; --n) fraction = z + n / 2 / fraction;
+    r = bell / fraction;
+  }
   return x >= 0 ? r : 2 - r;
 };
 
@@ -184,3 +191,39 @@ const applyMaps = ({ columns, rows, planes }, along, across) => ({
     return isIdentity(across) ? wide : mapColumns(wide, along.out, across);
   }),
 });
+
+// Weights of magnitude below `least` are left out.
+const withoutTapsBelow = (map, least) => {
+  const kept = newMap(map.in);
+  for (let i = 0; i < map.out; ++i) {
+    for (let k = map.start[i]; k < map.start[i + 1]; ++k) {
+      if (Math.abs(map.weight[k]) < least) continue;
+      kept.source.push(map.source[k]);
+      kept.weight.push(map.weight[k]);
+    }
+    kept.start.push(kept.source.length);
+  }
+  return finished(kept);
+};
+
+// `first`, then `second`.
+const chained = (first, second) => {
+  const both = newMap(first.in);
+  for (let i = 0; i < second.out; ++i) {
+    const sum = new Map();
+    for (let k = second.start[i]; k < second.start[i + 1]; ++k) {
+      const j = second.source[k];
+      for (let m = first.start[j]; m < first.start[j + 1]; ++m) {
+        sum.set(first.source[m], (sum.get(first.source[m]) ?? 0) + second.weight[k] * first.weight[m]);
+      }
+    }
+    for (const [source, weight] of [...sum].sort((a, b) => a[0] - b[0])) {
+      both.source.push(source);
+      both.weight.push(weight);
+    }
+    both.start.push(both.source.length);
+  }
+  return finished(both);
+};
+
+const squaredMap = (map) => ({ ...map, weight: map.weight.map((w) => w * w) });

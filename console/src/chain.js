@@ -131,7 +131,8 @@ const throughLens = (light, camera, fovDeg) => {
 };
 
 // Sensor and electronics of a field, up to the amplified signal. key: of its noise; null for none. before: what lag
-// has kept of the field before.
+// has kept of the field before. Also returns the signal before bloom and saturation (full), and before black clamp and
+// gain (before).
 const throughSensor = (signal, camera, monitor, law, exposure, key, before) => {
   let p = signal, kept = null;
   if (key !== null) {
@@ -150,6 +151,7 @@ const throughSensor = (signal, camera, monitor, law, exposure, key, before) => {
     p = applyMaps(p, gaussianBlur(p.columns, camera.blur_h), gaussianBlur(p.rows, camera.blur_v));
   }
   if (camera.smear_db > 0) p = smearColumns(p, 10 ** (-camera.smear_db / 20));
+  const full = p;
   if (camera.saturation > 0 && camera.bloom > 0) p = bloomOver(p, camera);
   if (camera.saturation > 0) p = eachPoint(p, (s) => Math.min(s, camera.saturation));
   if (key !== null) p = addReadNoise(p, law, key + 1000);
@@ -158,7 +160,7 @@ const throughSensor = (signal, camera, monitor, law, exposure, key, before) => {
     p = applyMaps(p, line, gaussianBlur(p.rows, 0));
   }
   const least = camera.black_clamp ? 0 : -Infinity, { gain } = exposure;
-  return { amplified: eachPoint(p, (s) => gain * Math.max(s, least)), kept };
+  return { amplified: eachPoint(p, (s) => gain * Math.max(s, least)), kept, full, before: p };
 };
 
 const toLine = (amplified, camera) => {

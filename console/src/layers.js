@@ -25,8 +25,13 @@ const loadView = async (camera) => {
   view.objects = await unpackObjects(camera.objects);
   view.targets = [];
   for (const target of camera.targets) {
+    const seen = [], parts = [];
+    view.objects.forEach((object, i) => { if (object === target.object + 1) seen.push(i); });
+    for (const part of target.parts) {
+      parts.push({ ...part, target: await unpackRuns(part.target), surround: await unpackRuns(part.surround) });
+    }
     view.targets.push({
-      ...target, measured: await unpackRuns(target.measured), surround: await unpackRuns(target.surround),
+      ...target, seen, parts, measured: await unpackRuns(target.measured), surround: await unpackRuns(target.surround),
     });
   }
   return view;

@@ -53,6 +53,7 @@ const draw = (view) => {
   }
   drawn = { light, ...now };
   showAll();
+  if (judged !== judgedBy()) judgeLater();
   const words = [state.view === "monitor" ? modelOf(state).name : "clean", `${view.columns} × ${view.rows}`,
     `noise of the rendering ${short(100 * view.camera.relative_noise, 2)} %`, `${Math.round(performance.now() - start)} ms`];
   byId("stamp").textContent = words.join(" · ");
@@ -67,7 +68,6 @@ const showAll = () => {
   for (const strip of shown.strips) strip.show(shares);
   byId("total").textContent = `mean ${luminanceText(total)}`;
   showMeter(byId("meter"), drawn);
-  showTargets(byId("targets"), targetFigures(light, state));
   showReading(byId("reading"), light, probe);
   showScale(byId("scale"), state.top);
   const line = byId("line");
@@ -77,6 +77,45 @@ const showAll = () => {
   byId("false").setAttribute("aria-pressed", String(state.top !== null));
   byId("undo").disabled = history.past.length === 0;
   byId("redo").disabled = history.future.length === 0;
+};
+
+// Verdicts cost more than a picture: they follow when the controls have rested, and the reasons one by one after them.
+// What the verdicts depend on.
+let judged = null;
+const judgedBy = () => JSON.stringify(["camera", "place", "level", "tint", "off", "group", "model", "camera_set", "monitor_set"].map((key) => state[key]));
+let judging = 0; // number of the drawing whose verdicts are under way
+let rest = null;
+const restMs = 60;
+const judgeLater = () => {
+  const number = ++judging;
+  judged = judgedBy();
+  clearTimeout(rest);
+  byId("targets").setAttribute("aria-busy", "true");
+  rest = setTimeout(() => judge(drawn.light, copyOf(state), number), restMs);
+};
+const judge = async (light, of, number) => {
+  const figures = targetFigures(light, of), reasons = new Map();
+  const setting = settingOf(of);
+  if (setting >= 0) {
+    for (const [name, found] of judgedByStudy(of.camera, setting, of.place)) if (found) reasons.set(name, found[1]);
+  }
+  showTargets(byId("targets"), figures, reasons);
+  for (const found of figures) {
+    if (reasons.has(found.name)) continue;
+    const target = light.view.targets.find(({ name }) => name === found.name);
+    const steps = reasonSteps(light, of, target, found);
+    for (;;) {
+      const { done, value } = steps.next();
+      if (done) {
+        reasons.set(found.name, value);
+        break;
+      }
+      await new Promise((later) => { setTimeout(later); });
+      if (number !== judging) return;
+    }
+    showTargets(byId("targets"), figures, reasons);
+  }
+  byId("targets").setAttribute("aria-busy", "false");
 };
 
 const toggleFalse = () =>
@@ -214,6 +253,7 @@ const begin = () => {
       () => state.view, (view) => changeState((to) => { to.view = view; })),
     makePanel(byId("panel")),
     makeOrbit(byId("orbit")),
+    makeSettings(byId("setting")),
     fitPicture,
   ];
   byId("keylist").append(...keyTable.flatMap(([keys, , words]) => [make("dt", { textContent: keys.join(" ") }), make("dd", { textContent: words })]),
@@ -261,6 +301,16 @@ globalThis.earthshineConsole = {
   async targets(text) {
     const of = stateOfText(text);
     return targetFigures(lightOf(await viewOf(of.camera), of), of);
+  },
+  async reasons(text) {
+    const of = stateOfText(text), light = lightOf(await viewOf(of.camera), of);
+    return targetFigures(light, of).map((found) => {
+      const steps = reasonSteps(light, of, light.view.targets.find(({ name }) => name === found.name), found);
+      for (;;) {
+        const { done, value } = steps.next();
+        if (done) return [found.name, value];
+      }
+    });
   },
   words: (text) => {
     const of = stateOfText(text);

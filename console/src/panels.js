@@ -92,20 +92,33 @@ const showMeter = (box, { monitor, tone }) => {
 };
 
 const signed = (value) => (value === undefined ? "–" : `${value < 0 ? "−" : "+"}${short(Math.abs(value) * 100, 2)} %`);
-const showTargets = (box, figures) => {
+const figuresText = ({ chances: p, snrD, onMonitor, threshold, lines, cycles }) => {
+  const words = [];
+  if (p) words.push(`probability ${p.map((value, k) => `${tasks[k]} ${value.toFixed(2)}`).join(", ")}`);
+  if (onMonitor !== undefined) words.push(`contrast on the monitor ${signed(onMonitor)}`);
+  if (threshold !== undefined) words.push(`least contrast that the eye sees ${signed(threshold).slice(1)}`);
+  if (snrD !== undefined) words.push(`SNR of the whole target in 0.2 s ${short(snrD, 2)}`);
+  if (lines !== undefined) words.push(`${short(lines, 2)} TV lines across it`);
+  if (cycles !== undefined) words.push(`${short(cycles, 2)} cycles resolved`);
+  return words.join("; ");
+};
+// reasons: words by target's name; none yet: empty.
+const showTargets = (box, figures, reasons) => {
   if (figures.length === 0) {
     box.textContent = "The scene marks no targets.";
     return;
   }
-  const head = make("tr", {}, ...["Target", "cd/m²", "Contrast", "SNR", "Estimate"].map((text) => make("th", { scope: "col", textContent: text })));
-  const rows = figures.map(({ name, luminance, weber, snr, snrD, verdict }) => {
+  const head = make("tr", {}, ...["Target", "cd/m²", "Contrast", "SNR", "Verdict"].map((text) => make("th", { scope: "col", textContent: text })));
+  const rows = figures.flatMap((found) => {
+    const { name, luminance, weber, snr, verdict } = found, why = reasons.get(name);
     const bar = make("i", { className: "contrast" });
     bar.style.setProperty("--of", Math.max(-1, Math.min(1, weber ?? 0)));
-    return make("tr", { data: { verdict } }, make("th", { scope: "row", textContent: name }),
+    const row = make("tr", { data: { verdict }, title: figuresText(found) }, make("th", { scope: "row", textContent: name }),
       make("td", { textContent: luminance === undefined ? "–" : short(luminance, 2) }),
       make("td", {}, bar, signed(weber)),
-      make("td", { textContent: snr === undefined ? "–" : short(snr, 2), title: snrD === undefined ? "" : `SNR of the whole target in 0.2 s: ${short(snrD, 2)}` }),
+      make("td", { textContent: snr === undefined ? "–" : short(snr, 2) }),
       make("td", {}, make("b", { textContent: verdict })));
+    return why ? [row, make("tr", { className: "why" }, make("td", { colSpan: 5, textContent: why }))] : [row];
   });
   box.replaceChildren(make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows)));
 };
@@ -132,6 +145,10 @@ const showReading = (box, light, place) => {
 };
 
 const phaseOf = (place) => place.phase || "–";
+const placeText = ({ utc, position_deg: position, time_s: time, phase }) =>
+  [utc || (position === null ? "" : `${short(position, 4)}°`), time === null || utc ? "" : `${Math.round(time / 60)} min from noon`, phase]
+    .filter(Boolean).join(" · ");
+const isSeen = (verdict) => ["identified", "recognised", "detected"].includes(verdict);
 const makeOrbit = (box) => {
   if (data.places.length < 2) return () => {};
   box.hidden = false;
@@ -139,14 +156,33 @@ const makeOrbit = (box) => {
   slider.addEventListener("input", () => changeState((to) => { to.place = Number(slider.value); }, "orbit"));
   slider.addEventListener("change", endMove);
   const band = make("div", { className: "band" }, ...data.places.map((place) => make("i", { className: phaseOf(place) })));
+  // Of a study: the share of the targets in view that the camera's viewer sees at each stop.
+  const seen = make("div", { className: "band seen" }, ...data.places.map(() => make("i")));
   const words = make("span");
-  box.append(make("div", { className: "track" }, band, slider), words);
+  box.append(make("div", { className: "track" }, band, seen, slider), words);
   return () => {
     slider.value = state.place;
-    const place = data.places[state.place];
-    words.textContent = `${short(place.position_deg, 4)}° · ${Math.round(place.time_s / 60)} min from noon · ${phaseOf(place)}`;
+    words.textContent = placeText(data.places[state.place]);
     slider.setAttribute("aria-valuetext", words.textContent);
+    const setting = settingOf(state);
+    seen.hidden = setting < 0;
+    if (seen.hidden) return;
+    data.places.forEach((place, k) => {
+      const judged = judgedByStudy(state.camera, setting, k).map(([, found]) => found?.[0]).filter((verdict) => verdict && verdict !== "out-of-view");
+      const count = judged.filter(isSeen).length;
+      seen.children[k].style.setProperty("--share", judged.length ? count / judged.length : 0);
+      seen.children[k].title = `${placeText(place)}: ${count} of ${judged.length} targets seen`;
+    });
   };
+};
+
+const makeSettings = (select) => {
+  if (!data.study) return () => {};
+  select.hidden = false;
+  const other = make("option", { value: -1, textContent: "as on the faders", disabled: true });
+  select.append(...data.study.settings.map(({ name }, k) => make("option", { value: k, textContent: name })), other);
+  select.addEventListener("change", () => changeState((to) => Object.assign(to, withSetting(to, Number(select.value)))));
+  return () => { select.value = settingOf(state); };
 };
 
 const showScale = (box, top) => {

@@ -7,7 +7,7 @@ const mostLevel = 4;
 const levelOfWay = (way) => Number(short((way / 500) ** 2, 3));
 const wayOfLevel = (level) => 500 * Math.sqrt(level);
 
-const startState = () => ({
+const plainState = () => ({
   camera: 0,
   place: 0,
   level: {}, // of a light by name; 1 where it is not here
@@ -22,6 +22,35 @@ const startState = () => ({
   monitor_set: {},
   noise: "off", // "frozen", "live"
 });
+
+// A page of a study begins with its first lamp setting.
+const startState = () => (data.study ? withSetting(plainState(), 0) : plainState());
+
+// The lamp setting of a study as levels and tints.
+const withSetting = (state, setting) => {
+  const changed = { ...state, level: {}, tint: {}, off: {}, group: {} };
+  data.study.settings[setting].factors.forEach((factor, k) => {
+    const { name, kind } = data.lights[k], most = Math.max(...factor);
+    if (kind === "ambient") return;
+    if (most !== 1) changed.level[name] = Math.min(most, mostLevel);
+    if (most > 0 && factor.some((value) => value !== most)) {
+      changed.tint[name] = `#${factor.map((value) => srgbByte(value / most).toString(16).padStart(2, "0")).join("")}`;
+    }
+  });
+  return changed;
+};
+
+// The number of the study's lamp setting that the state has, with each camera's own model; -1: none. A tint has 8 bits.
+const settingOf = (state) => {
+  if (!data.study || state.model || Object.keys({ ...state.camera_set, ...state.monitor_set }).length > 0) return -1;
+  const factors = factorsOf(state);
+  return data.study.settings.findIndex((setting) => setting.factors.every((wanted, k) =>
+    data.lights[k].kind === "ambient" || wanted.every((value, c) => Math.abs(value - factors[k][c]) <= 0.01 * Math.max(...wanted))));
+};
+
+// [verdict, reasons] by target of a camera in the study's condition.
+const judgedByStudy = (camera, setting, place) =>
+  Object.entries(data.study.judged[data.cameras[camera].name] ?? {}).map(([name, list]) => [name, list[setting * data.study.places + place]]);
 
 const lightLevel = (state, { name, group }) =>
   state.off[name] ? 0 : (state.level[name] ?? 1) * (group ? state.group[group] ?? 1 : 1);
@@ -49,7 +78,7 @@ const modelOf = (state) => {
 // Entries of a state that differ from the start, as [key, text].
 const mapsOfState = { level: "l", tint: "t", off: "off", group: "g", camera_set: "c", monitor_set: "m" };
 const textOfState = (state) => {
-  const words = new URLSearchParams(), start = startState();
+  const words = new URLSearchParams(), start = plainState();
   if (data.cameras.length > 1) words.set("camera", data.cameras[state.camera].name);
   if (data.places.length > 1) words.set("place", state.place);
   for (const key of ["view", "white", "top", "model", "noise"]) {
@@ -63,7 +92,7 @@ const textOfState = (state) => {
 
 // A text of another page, or nonsense, leaves what it does not know.
 const stateOfText = (text) => {
-  const state = startState(), model = () => modelOf(state), words = new URLSearchParams(text);
+  const state = text === "" ? startState() : plainState(), model = () => modelOf(state), words = new URLSearchParams(text);
   const number = (value, low, high) => (value !== "" && value >= low && value <= high ? Number(value) : null);
   const camera = data.cameras.findIndex(({ name }) => name === words.get("camera"));
   state.camera = Math.max(0, camera);

@@ -3,6 +3,7 @@
 import base64
 import json
 import re
+import shutil
 import struct
 import unittest
 import zlib
@@ -82,6 +83,38 @@ class Console(tiny_bay.Case):
         self.assertNotIn(2, suns)  # in the Earth's shadow
         self.assertEqual({layer["place"] for layer in data["cameras"][0]["layers"] if layer["light"] == lights["left"]}, {None})
         self.assertEqual(report["bytes"], (self.folder / "c.html").stat().st_size)
+
+    def test_a_study_gives_its_places_settings_and_verdicts(self):
+        self.done("study", "run", "s.toml", "-o", "d", "-q")
+        report = self.json("console", "d", "-o", "c.html")
+        self.assertFalse((self.folder / "c.layers").exists())  # all light is the study's
+        _, data, _ = self.page("c.html")
+        study = self.study("d")
+        self.assertEqual([place["position_deg"] for place in data["places"]], [0, 180])
+        self.assertEqual([setting["name"] for setting in data["study"]["settings"]], ["on", "right alone"])
+        names = [light["name"] for light in data["lights"]]
+        alone = dict(zip(names, data["study"]["settings"][1]["factors"]))
+        self.assertEqual((alone["left"] if "left" in alone else [0, 0, 0], alone["right"], alone["sun"]), ([0, 0, 0], [0.5] * 3, [1, 1, 1]))
+        conditions = {entry["id"]: (entry["lamps"], entry["position_deg"]) for entry in study["conditions"]}
+        for row in study["results"]:
+            lamps, position = conditions[row["condition"]]
+            number = 2 * ["on", "right alone"].index(lamps) + [0, 180].index(position)
+            self.assertEqual(data["study"]["judged"][row["camera"]][row["target"]][number], [row["verdict"], row["why"]])
+        self.assertEqual([camera["camera"] for camera in report["cameras"]], ["A", "B"])
+
+    def test_a_study_without_its_light_is_drawn_again_and_a_changed_scene_is_refused(self):
+        self.done("study", "visibility", "bay.toml", "--size", "16x12", "--error", "0.3", "-o", "d", "-q")
+        shutil.rmtree(self.folder / "d" / "points")
+        self.done("console", "d", "--camera", "A", "-o", "c.html", "-q")
+        _, data, _ = self.page("c.html")
+        self.assertEqual((data["cameras"][0]["columns"], data["cameras"][0]["rows"], len(data["cameras"])), (16, 12, 1))
+        for option in (("--set", "quality.error=0.1"), ("--size", "8x8"), ("--positions", "4")):
+            self.says(self.refused("console", "d", *option, "-o", "n.html"), option[0], "study")
+        self.write("bay.toml", tiny_bay.BAY.replace("intensity = 500", "intensity = 501"))
+        self.says(self.refused("console", "d", "-o", "n.html"), "bay.toml", "has changed since the study", "the lights")
+        (self.folder / "d" / "study.json").unlink()
+        self.says(self.refused("console", "d", "-o", "n.html"), "study.json", "cannot be read")
+        self.assertFalse((self.folder / "n.html").exists())
 
     def test_names_do_nothing_in_the_page(self):
         self.write("odd.toml", tiny_bay.BAY.replace('"left"', '"</script><script>window.owned = 1</script>"').replace('"tiny bay"', '"<img src=x onerror=alert(1)>"'))

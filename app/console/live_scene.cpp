@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/console/live_scene.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+#include "app/console.h"
+#include "app/render/draw.h"
+#include "app/render/error_json.h"
+#include "app/render/light.h"
+#include "base/error.h"
+#include "raytrace/preview.h"
+#include "scenes/text/toml_file.h"
+
+namespace earthshine::app {
+namespace {
+
+using base::Blame;
+using base::Error;
+
+[[noreturn]] void refuse(const std::string& key, const std::string& found,
+                         const std::string& allowed) {
+  throw Error(Blame::Input, "request", (key.empty() ? "" : "\"" + key + "\" ") + found, allowed);
+}
+
+constexpr double largest_number = 1e9;
+
+double number_of(const Json& value, const std::string& key) {
+  if (!value.is_number()) refuse(key, "is no number", "numbers are finite");
+  const double number = value.get<double>();
+  if (!(std::abs(number) <= largest_number)) {
+    refuse(key, "is out of range", "numbers are finite and at most 1e9");
+  }
+  return number;
+}
+
+std::vector<double> numbers_of(const Json& value, const std::string& key, std::size_t count) {
+  if (count == 1) return {number_of(value, key)};
+  if (!value.is_array() || value.size() != count) {
+    refuse(key, fmt::format("is no list of {} numbers", count), {});
+  }
+  std::vector<double> numbers;
+  for (const Json& one : value) numbers.push_back(number_of(one, key));
+  return numbers;
+}
+
+Vec3 vector_of(const Json& view, const char* key) {
+  const std::vector<double> v = numbers_of(view.value(key, Json()), std::string("view.") + key, 3);
+  return {v[0], v[1], v[2]};
+}
+
+int whole_of(const Json& value, const std::string& key, int least, int most) {
+  const double number = number_of(value, key);
+  if (number != std::floor(number) || number < least || number > most) {
+    refuse(key, "is out of range", fmt::format("whole numbers from {} to {}", least, most));
+  }
+  return static_cast<int>(number);
+}
+
+void check_keys(const Json& json, const std::string& where,
+                std::initializer_list<const char*> allowed) {
+  for (const auto& [key, value] : json.items()) {
+    if (std::ranges::none_of(allowed, [&](const char* one) { return key == one; })) {
+      refuse(where + key, "is unknown", fmt::format("allowed are {}", fmt::join(allowed, ", ")));
+    }
+  }
+}
+
+LiveRequest::View view_of(const Json& json) {
+  if (!json.is_object()) refuse("view", "is no object", {});
+  check_keys(json, "view.", {"position", "look_at", "up", "fov_deg"});
+  LiveRequest::View view;
+  view.position = vector_of(json, "position");
+  view.look_at = vector_of(json, "look_at");
+  view.up = vector_of(json, "up");
+  view.fov_deg = number_of(json.value("fov_deg", Json()), "view.fov_deg");
+  const Vec3 along = view.look_at - view.position;
+  const bool has_axes = glm::length(along) > 1e-6 &&
+                        glm::length(glm::cross(along, view.up)) > 1e-9 * glm::length(along);
+  if (!has_axes) refuse("view", "has no direction", "look_at is off position, up is off the axis");
+  if (!(view.fov_deg >= 1.0 && view.fov_deg <= 170.0)) {
+    refuse("view.fov_deg", "is out of range", "1 to 170 degrees");
+  }
+  return view;
+}
+
+// The key of a table that may be moved, and the count of its numbers.
+struct MovableKey {
+  const char *table, *key;
+  std::size_t count;
+};
+constexpr MovableKey movable_keys[] = {
+    {"light", "position", 3}, {"object", "translate", 3}, {"joint", "angle_deg", 1}};
+
+std::size_t count_of(const std::string& key) {
+  for (const MovableKey& one : movable_keys) {
+    if (key.starts_with(std::string(one.table) + ".") &&
+        key.ends_with(std::string(".") + one.key)) {
+      return one.count;
+    }
+  }
+  refuse("set." + key, "cannot be moved",
+         "light.NAME.position, object.NAME.translate or joint.NAME.angle_deg");
+}
+
+// Finite numbers of a TOML value; empty for another value.
+std::vector<double> numbers_in(const scenes::TomlNode& node) {
+  if (const auto* whole = std::get_if<std::int64_t>(&node.value)) {
+    return {static_cast<double>(*whole)};
+  }
+  if (const auto* number = std::get_if<double>(&node.value)) return {*number};
+  std::vector<double> all;
+  if (const auto* items = std::get_if<scenes::TomlArray>(&node.value)) {
+    for (const scenes::TomlNode& item : *items) {
+      const std::vector<double> one = numbers_in(item);
+      if (one.size() != 1) return {};
+      all.push_back(one.front());
+    }
+  }
+  return all;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::string answer_of(const Json& head, const base::Image& image) {
+  const std::string text = dump(head);
+  const auto length = static_cast<std::uint32_t>(text.size());
+  std::string bytes;
+  for (const unsigned shift : {0U, 8U, 16U, 24U}) {
+    bytes.push_back(static_cast<char>((length >> shift) & 0xFFU));
+  }
+  bytes += text;
+  for (const char* name : {"R", "G", "B"}) {
+    const base::Channel* channel = image.find(name);
+    const std::size_t begin = bytes.size(), size = image.pixel_count() * sizeof(float);
+    bytes.resize(begin + size);
+    std::memcpy(bytes.data() + begin, channel->values.data(), size);
+  }
+  return bytes;
+}
+
+Json three(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
+
+LiveRequest read_live_request(std::string_view text) {
+  // Deep nesting would overflow the parser's stack of values only beyond 64 KiB of brackets.
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded() || !json.is_object()) refuse({}, "is no JSON object", {});
+  check_keys(json, "", {"camera", "columns", "rows", "view", "set", "level"});
+  LiveRequest request;
+  const Json camera = json.value("camera", Json());
+  if (!camera.is_string()) refuse("camera", "is no text", "the name of a camera");
+  request.camera = camera.get<std::string>();
+  constexpr int least = 16, most = 1024;
+  if (json.contains("columns"))
+    request.size.columns = whole_of(json["columns"], "columns", least, most);
+  if (json.contains("rows")) request.size.rows = whole_of(json["rows"], "rows", least, most);
+  if (json.contains("view")) request.view = view_of(json["view"]);
+  if (json.contains("level")) {
+    request.level = static_cast<std::size_t>(
+        whole_of(json["level"], "level", 0, static_cast<int>(std::size(level_errors))));
+  }
+  const Json set = json.value("set", Json::object());
+  if (!set.is_object()) refuse("set", "is no object", {});
+  for (const auto& [key, value] : set.items()) {
+    request.set.emplace_back(key, numbers_of(value, "set." + key, count_of(key)));
+  }
+  return request;
+}
+
+LiveScene::LiveScene(const SceneInput& input, const Common& common)
+    : common_(common), own_set_(input.overrides) {
+  common_.quiet = true;
+  common_.progress = std::make_shared<Progress>(true);
+  scene_.path = input.path;
+  scene_.set(own_set_);
+  scene_.read();
+  cameras_ = scene_.loaded.scene.cameras;
+  lamps_ = scene_.loaded.scene.lamps;
+  movables_ = movables();
+}
+
+std::vector<LiveScene::Movable> LiveScene::movables() const {
+  std::vector<Movable> found;
+  const scenes::TomlNode root = scenes::read_toml(scene_.path);
+  for (const auto& [table, key, count] : movable_keys) {
+    const auto* list = scenes::find_entry(std::get<scenes::TomlTable>(root.value), table);
+    const auto* entries = list ? std::get_if<scenes::TomlArray>(&list->node.value) : nullptr;
+    if (entries == nullptr) continue;
+    for (const scenes::TomlNode& entry : *entries) {
+      const auto& keys = std::get<scenes::TomlTable>(entry.value);
+      const auto* name = scenes::find_entry(keys, "name");
+      const auto* text = name ? std::get_if<std::string>(&name->node.value) : nullptr;
+      const auto* value = scenes::find_entry(keys, key);
+      // Without the key: objects and joints are at 0, a lamp without a position has none.
+      if (text == nullptr || (value == nullptr && std::string_view(table) == "light")) continue;
+      std::vector<double> numbers =
+          value ? numbers_in(value->node) : std::vector<double>(count, 0.0);
+      if (numbers.size() != count) continue;
+      Movable& one = found.emplace_back(fmt::format("{}.{}.{}", table, *text, key), numbers);
+      const auto lamp = std::ranges::find(lamps_, *text, &scenes::Lamp::name);
+      if (std::string_view(table) != "light" || lamp == lamps_.end() ||
+          scenes::find_entry(keys, "joint") ||
+          (lamp->kind != scenes::LampKind::Point && lamp->kind != scenes::LampKind::Spot)) {
+        continue;
+      }
+      const Vec3 as_written(numbers[0], numbers[1], numbers[2]);
+      const double unit_m = glm::length(lamp->position) / glm::length(as_written);
+      if (!(glm::distance(unit_m * as_written, lamp->position) <= 1e-9 * unit_m)) continue;
+      if (lamp->kind == scenes::LampKind::Spot) {
+        const auto* aim = scenes::find_entry(keys, "aim");
+        const std::vector<double> at = aim ? numbers_in(aim->node) : std::vector<double>();
+        if (at.size() != 3) continue;
+        one.aim_m = unit_m * Vec3(at[0], at[1], at[2]);
+      }
+      one.lamp = static_cast<std::size_t>(lamp - lamps_.begin());
+      one.unit_m = unit_m;
+    }
+  }
+  return found;
+}
+
+Json LiveScene::describe() {
+  Json cameras = Json::array(), movables = Json::array();
+  for (const scenes::Camera& camera : cameras_) {
+    cameras.push_back({{"name", camera.name},
+                       {"position", three(camera.position)},
+                       {"look_at", three(camera.look_at)},
+                       {"up", three(camera.up)},
+                       {"fov_deg", camera.fov_deg},
+                       {"columns", camera.columns},
+                       {"rows", camera.rows}});
+  }
+  for (const Movable& one : movables_) movables.push_back({{"key", one.key}, {"value", one.value}});
+  const std::string& name = scene_.loaded.scene.name;
+  return {{"scene", name.empty() ? std::filesystem::path(scene_.path).stem().string() : name},
+          {"path", scene_.path},
+          {"cameras", cameras},
+          {"movables", movables},
+          {"level_errors", level_errors}};
+}
+
+bool LiveScene::move_lamps(const LiveRequest& request) {
+  if (!scene_.is_read) return false;
+  const auto value_in = [](const Set& set, const Movable& one) {
+    const auto found = std::ranges::find(set, one.key, &Set::value_type::first);
+    return found == set.end() ? one.value : found->second;
+  };
+  for (const Movable& one : movables_) {
+    if (value_in(request.set, one) != value_in(read_set_, one) && !one.lamp) return false;
+  }
+  for (const Movable& one : movables_) {
+    const std::vector<double> value = value_in(request.set, one);
+    if (value == value_in(read_set_, one)) continue;
+    scenes::Lamp& lamp = scene_.loaded.scene.lamps[*one.lamp];
+    lamp.position = one.unit_m * Vec3(value[0], value[1], value[2]);
+    if (one.aim_m) {
+      const double distance = glm::distance(*one.aim_m, lamp.position);
+      if (!(distance > 0.0)) refuse("set." + one.key, "is the lamp's own aim", {});
+      lamp.axis = (*one.aim_m - lamp.position) / distance;
+    }
+    lamps_moved_ = true;
+  }
+  return true;
+}
+
+void LiveScene::apply(const LiveRequest& request) {
+  std::vector<std::string> changes = own_set_;
+  for (const auto& [key, value] : request.set) {
+    if (std::ranges::find(movables_, key, &Movable::key) == movables_.end()) {
+      refuse("set." + key, "is not in the scene", {});
+    }
+    changes.push_back(value.size() == 1 ? fmt::format("{}={}", key, value.front())
+                                        : fmt::format("{}=[{}]", key, fmt::join(value, ", ")));
+  }
+  lamps_moved_ = false;
+  if (scene_.is_read) {
+    scene_.loaded.scene.cameras = cameras_;
+    scene_.loaded.scene.lamps = lamps_;
+  }
+  if (request.level > 0 || !move_lamps(request)) {
+    scene_.set(std::move(changes));
+    scene_.read();
+    read_set_ = request.set;
+    cameras_ = scene_.loaded.scene.cameras;
+    lamps_ = scene_.loaded.scene.lamps;
+  }
+  const auto found =
+      std::ranges::find(scene_.loaded.scene.cameras, request.camera, &scenes::Camera::name);
+  if (found == scene_.loaded.scene.cameras.end()) {
+    refuse("camera", "names no camera of the scene", {});
+  }
+  if (!request.view) return;
+  found->position = request.view->position;
+  found->look_at = request.view->look_at;
+  found->up = request.view->up;
+  found->fov_deg = request.view->fov_deg;
+}
+
+base::Image LiveScene::at_once(const RenderCall& call, const scenes::Camera& camera,
+                               const Size& size, Json& head) {
+  const bool same_light = light_ && light_overrides_ == scene_.overrides && !lamps_moved_;
+  if (same_light) {
+    head["kind"] = "patches";
+    return raytrace::preview(scene_.loaded.world(*scene_.query), light_->solution,
+                             raytrace::make_camera_model(camera, size.columns, size.rows));
+  }
+  // Other light: the samples of a small picture. They add what the solution lacks, and the solution
+  // before the move is nearer than none if its patches are still there.
+  const bool same_patches = light_ && light_structures_ == scene_.structures &&
+                            light_->solution.columns == 3 * scene_.loaded.groups.count();
+  Solved none;
+  if (!same_patches) none.solution = radiosity::unsolved(scene_.loaded.groups);
+  RenderCall small = call;
+  small.size = Size{std::max(16, size.columns / 4), std::max(16, size.rows / 4)};
+  small.no_error = true;
+  scene_.loaded.scene.quality.gather_rays = 4;
+  scene_.loaded.scene.quality.camera_samples = 1;
+  const RenderContext context{small, common_, scene_.loaded, *scene_.query,
+                              same_patches ? *light_ : none};
+  head["kind"] = "samples";
+  return draw_frame(context, camera, picture_options(small, common_, scene_.loaded, camera)).image;
+}
+
+base::Image LiveScene::sampled(RenderCall& call, const scenes::Camera& camera, std::size_t level,
+                               Json& head) {
+  StageTimes times;
+  const Solved& light = scene_.light_for(call, common_, times);
+  if (Interrupt::asked()) return {};
+  light_ = light;
+  light_overrides_ = scene_.overrides;
+  light_structures_ = scene_.structures;
+  if (level == 0) return {};
+  const RenderContext context{call, common_, scene_.loaded, *scene_.query, light};
+  Drawn drawn = draw_picture(context, camera, times);
+  head["kind"] = "samples";
+  head["error"] = error_json(drawn, scene_.loaded.scene.quality.error);
+  return std::move(drawn.frame.image);
+}
+
+std::optional<std::string> LiveScene::draw(const LiveRequest& request) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::uint64_t number = ++newest_;
+  Interrupt::ask(true);  // ends an older picture
+  const std::lock_guard<std::mutex> turn(turn_);
+  if (number != newest_) return std::nullopt;
+  Interrupt::ask(false);
+  apply(request);
+  RenderCall call;
+  call.scene.path = scene_.path;
+  call.cameras = {request.camera};
+  // The first level is quick: half the columns and rows.
+  call.size = request.size;
+  if (request.level == 1) {
+    call.size = Size{std::max(16, request.size.columns / 2), std::max(16, request.size.rows / 2)};
+  }
+  const auto cameras = wanted_cameras(call.cameras, scene_.loaded.scene);
+  const double error = level_errors[request.level == 0 ? 0 : request.level - 1];
+  scene_.prepare(call, cameras, true, error);
+  Json head = {{"level", request.level}, {"error", nullptr}};
+  base::Image image = request.level == 0 ? at_once(call, *cameras.front(), request.size, head)
+                                         : sampled(call, *cameras.front(), request.level, head);
+  if (Interrupt::asked() || image.channels.empty()) return std::nullopt;
+  head["columns"] = image.width;
+  head["rows"] = image.height;
+  head["seconds"] = seconds_since(start);
+  return answer_of(head, image);
+}
+
+}  // namespace earthshine::app

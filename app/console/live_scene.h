@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// The scene behind `console --serve`: pictures of it while cameras, lamps, objects and joints move.
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/render/warm_scene.h"
+
+namespace earthshine::app {
+
+// A request of the page: {"camera", "columns", "rows", "view", "set", "level"}, all but "camera"
+// optional. Lengths of `view` are in m, values of `set` as in the scene file.
+struct LiveRequest {
+  struct View {
+    Vec3 position{0.0}, look_at{0.0}, up{0.0};
+    double fov_deg = 0.0;
+  };
+  std::string camera;
+  Size size{256, 256};
+  std::optional<View> view;
+  std::vector<std::pair<std::string, std::vector<double>>> set;  // "light.NAME.position": 3 numbers
+  std::size_t level = 0;                                         // 0: at once
+};
+// Throws base::Error (Input) for text that is not JSON, unknown keys, and values of another type,
+// number or range.
+[[nodiscard]] LiveRequest read_live_request(std::string_view text);
+
+// The wanted error of each level above 0.
+inline constexpr double level_errors[] = {0.3, 0.2, 0.1, 0.05, 0.03, 0.02};
+
+class LiveScene {
+ public:
+  LiveScene(const SceneInput& input, const Common& common);
+
+  // Cameras, and what can be moved: for the page.
+  [[nodiscard]] Json describe();
+  // A head as JSON, its length in four bytes (little-endian) before it, and planes of R, G and B as
+  // 32-bit floats. No value if a newer request came meanwhile. Throws base::Error.
+  [[nodiscard]] std::optional<std::string> draw(const LiveRequest& request);
+
+ private:
+  struct Movable {
+    std::string key;
+    std::vector<double> value;
+    // A point or a spot that hangs on no joint: its position and axis alone change. Unit of
+    // `value`, m; of a spot the point that it keeps aiming at, m.
+    std::optional<std::size_t> lamp = {};
+    double unit_m = 0.0;
+    std::optional<Vec3> aim_m = {};
+  };
+  // Those of the scene's own file.
+  [[nodiscard]] std::vector<Movable> movables() const;
+  void apply(const LiveRequest& request);
+  // Moves lamps in the loaded scene and returns true if nothing else differs from it; level 0 need
+  // not read the scene again for them.
+  [[nodiscard]] bool move_lamps(const LiveRequest& request);
+  [[nodiscard]] base::Image at_once(const RenderCall& call, const scenes::Camera& camera,
+                                    const Size& size, Json& head);
+  [[nodiscard]] base::Image sampled(RenderCall& call, const scenes::Camera& camera,
+                                    std::size_t level, Json& head);
+
+  Common common_;
+  std::vector<std::string> own_set_;
+  WarmScene scene_;
+  using Set = decltype(LiveRequest::set);
+  Set read_set_;                         // with which the scene was read
+  std::vector<scenes::Camera> cameras_;  // } as read
+  std::vector<scenes::Lamp> lamps_;      // }
+  bool lamps_moved_ = false;             // since then
+  std::vector<Movable> movables_;
+  std::optional<Solved> light_;  // the latest, of `light_overrides_`
+  std::vector<std::string> light_overrides_;
+  std::size_t light_structures_ = 0;
+  std::mutex turn_;
+  std::atomic<std::uint64_t> newest_ = 0;
+};
+
+}  // namespace earthshine::app

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/render/warm_scene.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "app/console.h"
+#include "app/options.h"
+#include "radiosity/store/solution_key.h"
+#include "scenes/effects/light_groups.h"
+#include "scenes/read/scene_file.h"
+
+namespace earthshine::app {
+
+void WarmScene::set(std::vector<std::string> changes) {
+  if (changes == overrides) return;
+  overrides = std::move(changes);
+  is_read = false;
+}
+
+void WarmScene::read() {
+  if (is_read) return;
+  scenes::Scene scene =
+      text ? scenes::read_scene_text(*text, path, overrides) : scenes::read_scene(path, overrides);
+  loaded = check_scene(std::move(scene));
+  ++reads;
+  is_read = true;
+  quality = loaded.scene.quality;
+  warnings = loaded.scene.warnings;
+  view_warnings_.clear();
+  std::vector<std::uint64_t> parts;
+  for (const radiosity::ScenePart& part :
+       radiosity::scene_parts(loaded.scene, scenes::find_light_groups(loaded.scene))) {
+    parts.push_back(part.digest);
+  }
+  parts.resize(2);  // geometry and materials
+  if (query && parts == shape_) return;
+  query.reset();
+  query.emplace(loaded.scene);
+  shape_ = std::move(parts);
+  ++structures;
+}
+
+void WarmScene::prepare(const RenderCall& call, const std::vector<const scenes::Camera*>& cameras,
+                        bool draws, std::optional<double> error) {
+  loaded.scene.quality = quality;
+  if (error) loaded.scene.quality.error = error;
+  loaded.scene.warnings = warnings;
+  decide_effects(loaded, wanted_effects(call, cameras));
+  if (cameras.size() != 1) return check_input(loaded, *query, {cameras}, true, draws);
+  const auto known = view_warnings_.find(cameras.front()->name);
+  if (known != view_warnings_.end()) {
+    loaded.scene.warnings.insert(loaded.scene.warnings.end(), known->second.begin(),
+                                 known->second.end());
+    return;
+  }
+  check_input(loaded, *query, {cameras}, true, draws);
+  const auto own = loaded.scene.warnings.begin() + static_cast<std::ptrdiff_t>(warnings.size());
+  view_warnings_[cameras.front()->name] = {own, loaded.scene.warnings.end()};
+}
+
+const Solved& WarmScene::light_for(const RenderCall& call, const Common& common,
+                                   StageTimes& times) {
+  return lights.take({call, common, loaded, *query, {}, [] { return Interrupt::asked(); }}, times);
+}
+
+}  // namespace earthshine::app
