@@ -53,8 +53,10 @@ void run(const ConsoleCall& call, const Common& common) {
   std::vector<double> positions;
   if (call.positions > 0) positions = studies::even_positions(static_cast<int>(call.positions));
   const studies::StudyFile study = console_study(call.study, std::move(positions));
-  // Of a scene whose joints move: its first pose.
-  const std::unique_ptr<StudyPart> part = std::move(prepare_parts(study, 0, common).front());
+  // Of a scene whose joints move: its first pose with a camera outside all bodies.
+  StudyParts poses = prepare_parts(study, 0, common);
+  const std::unique_ptr<StudyPart> part = std::move(
+      *std::ranges::find_if(poses, [](const auto& pose) { return !pose->cameras.empty(); }));
   check_outputs({call.output}, part->loaded.scene.files);
   refuse_other_kind("-o", call.output, {".html"});
   if (!call.layers.empty()) {

@@ -268,8 +268,15 @@ void leave_moon_out(StudyPart& part, bool quiet) {
   if (!quiet) note("warning: " + scene.warnings.back());
 }
 
-// The scene's surfaces, cameras and lights for that way.
-void fill_part(const studies::StudyFile& study, const Common& common, StudyWay way,
+// The times of one of several poses.
+std::string times_of(const StudyWay& way) {
+  const std::string first = scenes::utc_text(way.moments.front());
+  return way.moments.size() == 1 ? first
+                                 : first + " to " + scenes::utc_text(way.moments.back());
+}
+
+// The scene's surfaces, cameras and lights for that way; one_pose: of several.
+void fill_part(const studies::StudyFile& study, const Common& common, StudyWay way, bool one_pose,
                StudyPart& part) {
   scenes::Scene& scene = part.loaded.scene;
   add_cctv(study, scene);
@@ -284,7 +291,9 @@ void fill_part(const studies::StudyFile& study, const Common& common, StudyWay w
   use.cameras = chosen_cameras(study, scene);
   use.moves_along_orbit = !study.positions_deg.empty() || study.time;
   part.query = std::make_unique<const scenes::RayQuery>(scene);
-  part.skipped = skip_hidden_cameras(scene, *part.query, use.cameras, common.quiet);
+  if (one_pose) part.skipped_at = times_of(way);
+  part.skipped =
+      skip_hidden_cameras(scene, *part.query, use.cameras, common.quiet, part.skipped_at);
   check_input(part.loaded, *part.query, use, common.quiet);
   find_cameras(study, use.cameras, common, part);
   part.positions_deg = std::move(way.positions_deg);
@@ -329,8 +338,12 @@ StudyParts prepare_parts(const studies::StudyFile& study, std::size_t index, con
       input.overrides.push_back("time.moment=" + scenes::utc_text(way.moments[begins[run]]));
       part->loaded = load(input, common.quiet || run > 0);
     }
-    fill_part(study, common, way.part(begins[run], begins[run + 1]), *part);
+    fill_part(study, common, way.part(begins[run], begins[run + 1]), begins.size() > 2, *part);
     parts.push_back(std::move(part));
+  }
+  if (std::ranges::all_of(parts, [](const auto& part) { return part->cameras.empty(); })) {
+    const StudyPart& part = *parts.front();  // throws for its first camera
+    raytrace::check_camera(part.loaded.scene, *part.query, *part.skipped.front());
   }
   return parts;
 }

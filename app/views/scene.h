@@ -43,6 +43,7 @@ struct StudyPart {
   std::unique_ptr<const scenes::RayQuery> query;
   std::vector<StudyCamera> cameras;
   std::vector<const scenes::Camera*> skipped;  // inside a body
+  std::string skipped_at;                      // of one of several poses: its UTC; else empty
   std::vector<std::string> targets;
 
   // "orbit 30 deg", or along time "2026-03-01T12:00:00Z".

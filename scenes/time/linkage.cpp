@@ -58,7 +58,7 @@ Pose pose_at(const Visitor& visitor, const Mission& mission, Instant t) {
   Pose pose{glm::dmat3(1.0), visitor.origin_m + to_scene * away};
   if (visitor.attitude) {
     pose.rotation =
-        to_scene * glm::mat3_cast(visitor.attitude->at(t)) * glm::transpose(visitor.body_axes);
+        to_scene * glm::mat3_cast(visitor.attitude->at(t, visitor.trajectory.longest_gap_s(t))) * glm::transpose(visitor.body_axes);
   }
   return pose;
 }
