@@ -105,9 +105,9 @@ constexpr double least_fall = 1e-6;
 
 }  // namespace
 
-RayQuery::RayQuery(const Scene& source)
+RayQuery::RayQuery(const Scene& source, const std::optional<Vec3>& about)
     : embree_(std::make_unique<Embree>()),
-      offsets_(source),
+      offsets_(source, about),
       specular_paths_(source, offsets_),
       coincident_(source) {
   embree_->device = rtcNewDevice(nullptr);

@@ -73,8 +73,14 @@ class Runner {
     const Interrupt interrupt;
     ways_.resize(task_.study.wanted.size());
     for (const StudyPart* part : parts_) expect_work(*part);
-    for (const StudyPart* part : parts_) {
-      StudyFrames frames(*part, fs::path(task_.folder) / points_folder, common_, task_.part);
+    std::optional<StudyFrames::Poses> poses;
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
+      const StudyPart* const part = parts_[k];
+      const bool more = k + 1 < parts_.size() && parts_[k + 1]->first_pose != nullptr;
+      if (part->first_pose == nullptr) poses.reset();
+      if (!poses && more) poses.emplace();
+      StudyFrames frames(*part, fs::path(task_.folder) / points_folder, common_, task_.part,
+                         poses ? &*poses : nullptr);
       StudyConditions conditions(*part, task_.study, frames.store(), common_);
       for (const StudyCamera& camera : part->cameras) {
         if (!look_through(*part, camera, frames, conditions)) results_.complete = false;
@@ -192,8 +198,8 @@ void note_unused(const StudyTask& task) {
 }
 
 // Pictures by cameras that are skipped wherever the picture's place is are skipped too.
-void drop_pictures_of_skipped(studies::StudyFile& study,
-                              const std::vector<const StudyPart*>& parts, bool quiet) {
+void drop_pictures_of_skipped(studies::StudyFile& study, const std::vector<const StudyPart*>& parts,
+                              bool quiet) {
   std::erase_if(study.pictures, [&](const studies::PictureWish& wish) {
     const auto is_wanted = [&](const auto& camera) { return camera.name == wish.camera; };
     std::string skipped_at;
@@ -236,8 +242,8 @@ StudyParts prepare(StudyTask& task, const Common& common) {
   const std::string& scene = parts.front()->loaded.scene.name;
   if (task.study.path.empty() && !scene.empty()) task.study.name = scene;
   drop_pictures_of_skipped(task.study, pointers(parts), common.quiet);
-  const auto seeing = std::ranges::find_if(
-      parts, [](const auto& part) { return !part->cameras.empty(); });
+  const auto seeing =
+      std::ranges::find_if(parts, [](const auto& part) { return !part->cameras.empty(); });
   fill_pictures(task.study, **seeing);
   check_pictures(task.study, pointers(parts));
   return parts;

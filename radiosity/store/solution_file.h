@@ -19,7 +19,8 @@ struct SolutionOrigin {
   const scenes::Scene& scene;
   const scenes::LightGroups& groups;
   const SolveOptions& options;
-  std::string program;  // version: other versions may give other numbers
+  std::string program;                        // version: other versions may give other numbers
+  const scenes::Scene* first_pose = nullptr;  // whose patches these are, posed; null: of `scene`
 };
 
 // Writes a temporary file and renames it. The same solution gives the same bytes: stage times are
