@@ -30,6 +30,24 @@ Vec3 direction(const RayPacket& packet, std::size_t k) {
 
 }  // namespace
 
+HitTargets::HitTargets(const Patches& patches, const std::vector<bool>& passes_on)
+    : patches_(patches), targets_(patches.of_triangle.size()) {
+  for (std::size_t k = 0; k < targets_.size(); ++k) {
+    const Facet& facet = patches.facets[patches.of_triangle[k]];
+    Target& target = targets_[k];
+    target.s_count = facet.s_count;
+    target.t_count = facet.t_count;
+    target.first_front = facet.first_front;
+    target.first_back = facet.first_back;
+    target.tree = facet.tree;
+    target.passes_on = passes_on[facet.material] ? 1 : 0;
+    target.kind =
+        static_cast<std::uint8_t>(facet.is_cluster()    ? cluster_kind
+                                  : facet.parallelogram ? triangle_kinds + patches.second_half[k]
+                                                        : facet.apex);
+  }
+}
+
 RowCaster::RowCaster(const scenes::Scene& scene, const scenes::RayQuery& query,
                      const Patches& patches, const std::vector<double>& kept,
                      const FormFactorOptions& options, std::uint32_t rays,
@@ -122,7 +140,7 @@ bool RowCaster::restore(std::uint32_t patch, const PatchRays::Sender& first, Ban
         band.sky_illuminance.resize(first_part);
         return false;
       }
-      const std::uint32_t ray = n * RayPacket::width + k;
+      const std::size_t ray = n * RayPacket::width + k;
       if (sky_ && ray / 64 < kept.missed.size() && (kept.missed[ray / 64] >> ray % 64 & 1U) != 0) {
         escape(direction(packet, k), 1.0, row, band);
       }
