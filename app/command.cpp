@@ -152,7 +152,7 @@ void check_input(LoadedScene& loaded, const scenes::RayQuery& query, const scene
 std::vector<const scenes::Camera*> skip_hidden_cameras(const scenes::Scene& scene,
                                                        const scenes::RayQuery& query,
                                                        std::vector<const scenes::Camera*>& cameras,
-                                                       bool quiet) {
+                                                       bool quiet, const std::string& moment) {
   std::vector<const scenes::Camera*> hidden, seeing;
   std::vector<std::string> reasons;
   for (const scenes::Camera* camera : cameras) {
@@ -160,13 +160,13 @@ std::vector<const scenes::Camera*> skip_hidden_cameras(const scenes::Scene& scen
       raytrace::check_camera(scene, query, *camera);
       seeing.push_back(camera);
     } catch (const Error& error) {
-      if (hidden.size() + 1 == cameras.size()) throw;
+      if (moment.empty() && hidden.size() + 1 == cameras.size()) throw;
       hidden.push_back(camera);
       reasons.emplace_back(error.what());
     }
   }
   for (const std::string& reason : reasons) {
-    if (!quiet) note("skipped: " + reason);
+    if (!quiet) note("skipped" + (moment.empty() ? "" : " at " + moment) + ": " + reason);
   }
   cameras = std::move(seeing);
   return hidden;

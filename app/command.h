@@ -133,11 +133,12 @@ void decide_effects(LoadedScene& loaded, const WantedEffects& wanted);
 void check_input(LoadedScene& loaded, const scenes::RayQuery& query, const scenes::SceneUse& use,
                  bool quiet, bool draws = false);
 
-// Removes those of several cameras that are inside a body, and returns them; a note names each
-// unless `quiet`. Throws base::Error (Input) if none would be left.
+// Removes the cameras that are inside a body, and returns them; a note names each unless `quiet`,
+// after " at `moment`" if there is one. Throws base::Error (Input) if none would be left; with a
+// moment, of several of a study, none may be left.
 [[nodiscard]] std::vector<const scenes::Camera*> skip_hidden_cameras(
     const scenes::Scene& scene, const scenes::RayQuery& query,
-    std::vector<const scenes::Camera*>& cameras, bool quiet);
+    std::vector<const scenes::Camera*>& cameras, bool quiet, const std::string& moment = {});
 // Throws StoppedShort unless `skipped`, names, is empty.
 void check_skipped(const std::vector<std::string>& skipped);
 

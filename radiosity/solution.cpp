@@ -3,14 +3,18 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <numeric>
 #include <set>
 
 #include "base/error.h"
+#include "base/ranks/ranks.h"
+#include "radiosity/bodies/closed_bodies.h"
 #include "radiosity/broadcast_solution.h"
 #include "radiosity/fill_solution.h"
 #include "radiosity/linear_solve.h"
 #include "radiosity/refine.h"
+#include "scenes/light/lamp_light.h"
 #include "scenes/reflect/energy.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_cells.h"
@@ -149,6 +153,36 @@ double back_share(const FormFactors& factors) {
                              : 0.0;
 }
 
+// Finds what moved since the kept pose, and makes the kept pose this one.
+std::unique_ptr<const MovedParts> begin_pose(const scenes::World& world, const Patches& patches,
+                                             KeptPose& kept) {
+  const scenes::Scene& scene = world.scene;
+  const bool light_outside = scenes::has_light_outside(scene);
+  const bool same = kept.rows.rows.size() == patches.count() &&
+                    kept.centre == world.query.centre() && kept.light_outside == light_outside;
+  const auto earlier = std::move(kept.bodies);
+  kept.bodies = std::make_shared<const ClosedBodies>(scene, world.query.centre(),
+                                                     same ? earlier.get() : nullptr);
+  std::unique_ptr<const MovedParts> moved;
+  if (same) {
+    moved = std::make_unique<const MovedParts>(kept.vertices, *earlier, scene, *kept.bodies);
+    double offset_m = 0.0;
+    for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+      offset_m = std::max(offset_m, world.query.offset_m(t));
+    }
+    kept.rows.unmoved = moved->unmoved(patches, 2.0 * offset_m);
+    kept.samples.unmoved = kept.rows.unmoved;
+  } else {
+    kept.rows.rows.assign(patches.count(), {});
+    kept.samples.of_source.clear();
+  }
+  kept.rows.moved = kept.samples.moved = moved.get();
+  kept.vertices = scene.vertices;
+  kept.centre = world.query.centre();
+  kept.light_outside = light_outside;
+  return moved;
+}
+
 }  // namespace
 
 SolveOptions solve_options(const scenes::QualityKnobs& knobs, std::uint64_t seed) {
@@ -221,6 +255,13 @@ Solution solve_keeping(const scenes::World& world, const SolveOptions& options, 
   rays.know_objects = variant.know_objects;
   if (world.scene.sky_parts && world.scene.sky_parts->cells)
     rays.sky_cells = &*world.scene.sky_parts->cells;
+  KeptPose* const kept = base::ranks() == nullptr ? variant.kept : nullptr;
+  std::unique_ptr<const MovedParts> moved;
+  if (kept != nullptr) {
+    moved = begin_pose(world, patches, *kept);
+    rays.kept = &kept->rows;
+    rays.bodies = kept->bodies;
+  }
   factors = cast_form_factors(world.scene, world.query, patches, rays, sky);
   const std::vector<double> open_m2 = open_areas(factors.open, patches.area_m2);
   report.form_factor_rays = factors.ray_count;
@@ -237,7 +278,14 @@ Solution solve_keeping(const scenes::World& world, const SolveOptions& options, 
   direct_options.flux_rays = std::min(direct_options.flux_rays, options.flux_rays);
   direct_options.points_per_patch =
       std::min(direct_options.points_per_patch, options.direct_points);
+  if (kept != nullptr) direct_options.kept = &kept->samples;
   DirectLight light = direct_light(world, patches, factors, direct_options);
+  if (kept != nullptr) {
+    const auto mirrors = world.query.specular_paths().mirrors();
+    kept->samples.mirrors.assign(mirrors.begin(), mirrors.end());
+    kept->samples.open_share = factors.open.share;
+    kept->rows.moved = kept->samples.moved = nullptr;
+  }
   report.shadow_rays = light.shadow_rays;
   report.sources_cost = light.cost;
   report.sources = std::move(light.sources);

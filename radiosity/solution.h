@@ -14,6 +14,7 @@
 #include "radiosity/direct/direct.h"
 #include "radiosity/direct/sources.h"
 #include "radiosity/factors/form_factors.h"
+#include "radiosity/factors/kept_rows.h"
 #include "radiosity/patches/patches.h"
 #include "scenes/effects/quality.h"
 #include "scenes/effects/world.h"
@@ -115,11 +116,25 @@ using PatchListener = std::function<void(const Patches& patches)>;
 [[nodiscard]] Solution solve(const scenes::World& world, const SolveOptions& options,
                              const PatchListener& listen = {});
 
+// What a solve leaves for the solve of the next pose of the same scene, on posed_patches() of the
+// same patches and with a ray query of the same centre: rows of form factors and samples of lamps
+// that nothing that moved can have changed, and surfaces of bodies. The next solution has the bytes
+// that it has without them.
+struct KeptPose {
+  KeptRows rows;
+  KeptSamples samples;
+  std::vector<Vec3> vertices;
+  Vec3 centre{0.0};
+  bool light_outside = false;  // scenes::has_light_outside
+  std::shared_ptr<const ClosedBodies> bodies;
+};
+
 // Differences from a solve with the same options.
 struct SolveVariant {
   std::uint32_t replicate = 0;  // of the form factors: each number gives an independent set of rays
   DirectOptions direct = {};    // its seed 0: the options' seed
   bool know_objects = true;     // FormFactorOptions::know_objects
+  KeptPose* kept = nullptr;     // of the pose before; becomes this one's
 };
 // On given patches; ignores options.patch_edge_m and options.refine.
 [[nodiscard]] Solution solve(const scenes::World& world, const SolveOptions& options,

@@ -105,9 +105,9 @@ constexpr double least_fall = 1e-6;
 
 }  // namespace
 
-RayQuery::RayQuery(const Scene& source)
+RayQuery::RayQuery(const Scene& source, const std::optional<Vec3>& about)
     : embree_(std::make_unique<Embree>()),
-      offsets_(source),
+      offsets_(source, about),
       specular_paths_(source, offsets_),
       coincident_(source) {
   embree_->device = rtcNewDevice(nullptr);
@@ -137,7 +137,18 @@ RayQuery::RayQuery(const Scene& source)
     far_m_ = far_extents * glm::length(glm::max(-bounds_.low, bounds_.high));
     embree_->masks = OpacityMasks(source);
     embree_->any_specular_paths = !specular_paths_.empty();
-    embree_->add_triangles(embree_->scene, source, 0, own_triangles, 0, own_vertices, centre());
+    const bool any_moves = std::ranges::any_of(source.objects, [](const Object& object) {
+      return !object.joint.empty() && !object.instance;
+    });
+    const auto add = [&](RTCScene to, Embree::Which which) {
+      embree_->add_triangles(to, source, 0, own_triangles, 0, own_vertices, centre(), which);
+    };
+    add(embree_->scene, any_moves ? Embree::Which::Standing : Embree::Which::All);
+    if (any_moves) {
+      embree_->movers = embree_->new_scene();
+      add(embree_->movers, Embree::Which::Moving);
+      rtcCommitScene(embree_->movers);
+    }
     embree_->add_instances(source, centre());
   }
   rtcCommitScene(embree_->scene);
@@ -176,6 +187,9 @@ void RayQuery::closest(const RayPacket& rays, std::size_t count, HitPacket& hits
   for (unsigned& id : query.hit.geomID) id = RTC_INVALID_GEOMETRY_ID;
   for (unsigned& id : query.hit.instID[0]) id = RTC_INVALID_GEOMETRY_ID;
   intersect8(valid_lanes[count].data(), embree_->scene, query);
+  if (embree_->movers != nullptr) {
+    intersect8(valid_lanes[count].data(), embree_->movers, query);
+  }
   for (std::size_t k = 0; k < RayPacket::width; ++k) {
     const bool hit = query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
     const unsigned instance = query.hit.instID[0][k];
@@ -217,6 +231,7 @@ Hit RayQuery::closest(const Vec3& origin, const Vec3& direction) const {
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   intersect1(embree_->scene, query);
+  if (embree_->movers != nullptr) intersect1(embree_->movers, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
   const unsigned instance = query.hit.instID[0];
   const bool front =
@@ -233,6 +248,9 @@ std::uint32_t RayQuery::occluded(const RayPacket& rays, std::size_t count) const
   fill(rays, query);
   ShadowContext context;
   occluded8(valid_lanes[count].data(), embree_->scene, query, context);
+  if (embree_->movers != nullptr) {
+    occluded8(valid_lanes[count].data(), embree_->movers, query, context);
+  }
   return hidden_bits(query, count);
 }
 
@@ -276,6 +294,9 @@ void RayQuery::light_shares(const RayPacket& rays, const std::uint32_t* mirrors,
     query.tfar[k] = std::min(query.tfar[k], static_cast<float>(std::max(0.0, to_mirror)));
   }
   occluded8(valid_lanes[count].data(), embree_->scene, query, context);
+  if (embree_->movers != nullptr) {
+    occluded8(valid_lanes[count].data(), embree_->movers, query, context);
+  }
   const std::uint32_t hidden = hidden_bits(query, count);
   for (std::size_t k = 0; k < count; ++k) {
     const bool turns = context.specular_paths != nullptr && mirrors[k] != no_mirror;

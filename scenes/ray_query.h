@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "scenes/coincident_faces.h"
 #include "scenes/scene.h"
@@ -47,7 +48,8 @@ class RayQuery {
  public:
   // Builds the acceleration structure from a centred single-precision copy of the triangles. Throws
   // base::Error (Work) if Embree reports an error.
-  explicit RayQuery(const Scene& scene);
+  // about: the centre() of another pose of the scene, so that rays have the same bytes in both.
+  explicit RayQuery(const Scene& scene, const std::optional<Vec3>& about = std::nullopt);
   ~RayQuery();
   RayQuery(RayQuery&&) noexcept;
   RayQuery& operator=(RayQuery&&) noexcept;

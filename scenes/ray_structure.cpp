@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 
 #include "scenes/triangle_point.h"
@@ -54,10 +55,10 @@ RTCScene RayQuery::Embree::new_scene() const {
 
 void RayQuery::Embree::add_triangles(RTCScene to, const Scene& source, std::size_t first,
                                      std::size_t count, std::size_t low, std::size_t high,
-                                     const Vec3& centre) {
+                                     const Vec3& centre, Which which) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), high - low));
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), high - low + 1));
   auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), count));
   if (vertices == nullptr || indices == nullptr) fail("no memory for the triangles");
@@ -66,9 +67,16 @@ void RayQuery::Embree::add_triangles(RTCScene to, const Scene& source, std::size
     for (int axis = 0; axis < 3; ++axis)
       vertices[3 * i + static_cast<std::size_t>(axis)] = static_cast<float>(p[axis]);
   }
+  // Embree leaves triangles out that are not finite.
+  for (std::size_t k = 0; k < 3; ++k)
+    vertices[3 * (high - low) + k] = std::numeric_limits<float>::quiet_NaN();
   for (std::size_t i = 0; i < count; ++i) {
+    const Triangle& triangle = source.triangles[first + i];
+    const bool moves = which != Which::All && triangle.object < source.objects.size() &&
+                       !source.objects[triangle.object].joint.empty();
+    const bool left_out = which != Which::All && moves != (which == Which::Moving);
     for (std::size_t k = 0; k < 3; ++k)
-      indices[3 * i + k] = static_cast<unsigned>(source.triangles[first + i].vertex[k] - low);
+      indices[3 * i + k] = static_cast<unsigned>(left_out ? high - low : triangle.vertex[k] - low);
   }
   rtcSetGeometryMask(geometry, all_rays);  // Embree 4 would default to 1
   rtcSetGeometryUserData(geometry, this);
@@ -106,7 +114,7 @@ void RayQuery::Embree::add_instances(const Scene& source, const Vec3& centre) {
       original.centre = Vec3(box.middle_in_single());
       original.scene = new_scene();
       add_triangles(original.scene, source, first.first_triangle, first.triangle_count, low,
-                    std::size_t{high} + 1, original.centre);
+                    std::size_t{high} + 1, original.centre, Which::All);
       rtcCommitScene(original.scene);
     }
     const Vec3 offset = instance.linear * original.centre + instance.offset_m - centre;

@@ -39,6 +39,9 @@ struct ShadowContext : EmbreeContext {
 struct RayQuery::Embree {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
+  // What hangs on joints; null: nothing does. A structure of its own, so that a ray that meets none
+  // of it has the same hit in all poses, even exactly on an edge, where the structure decides.
+  RTCScene movers = nullptr;
   OpacityMasks masks;
   bool any_specular_paths = false;  // some faces let shadow rays continue
   // Instances share the Embree scene of their original, which is built once. Indexed by the
@@ -50,6 +53,7 @@ struct RayQuery::Embree {
   std::vector<Placed> placed;
 
   ~Embree() {
+    if (movers != nullptr) rtcReleaseScene(movers);
     if (scene != nullptr) rtcReleaseScene(scene);
     if (device != nullptr) rtcReleaseDevice(device);
   }
@@ -75,9 +79,11 @@ struct RayQuery::Embree {
   static void pass_shadow(const RTCFilterFunctionNArguments* found);
   [[noreturn]] static void fail(const std::string& what);
   [[nodiscard]] RTCScene new_scene() const;
-  // Adds triangles first .. first + count - 1 and vertices low .. high - 1, relative to `centre`.
+  enum class Which { All, Standing, Moving };
+  // Adds triangles first .. first + count - 1 and vertices low .. high - 1, relative to `centre`;
+  // those of other objects keep their numbers and meet no ray.
   void add_triangles(RTCScene to, const Scene& source, std::size_t first, std::size_t count,
-                     std::size_t low, std::size_t high, const Vec3& centre);
+                     std::size_t low, std::size_t high, const Vec3& centre, Which which);
   void add_instances(const Scene& source, const Vec3& centre);
 };
 

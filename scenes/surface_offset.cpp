@@ -116,9 +116,9 @@ double surface_offset_m(const Scene& scene, std::uint32_t triangle, const Vec3& 
   return std::max({least, placed ? instance_offset_m(p) : 0.0, rounding_offset_m(p)});
 }
 
-SurfaceOffsets::SurfaceOffsets(const Scene& scene) {
+SurfaceOffsets::SurfaceOffsets(const Scene& scene, const std::optional<Vec3>& centre) {
   if (scene.triangles.empty()) return;
-  centre_ = centre_of_detail(scene);
+  centre_ = centre ? *centre : centre_of_detail(scene);
   offset_m_.reserve(scene.triangles.size());
   contact_m_.reserve(scene.triangles.size());
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "scenes/scene.h"
@@ -15,7 +16,8 @@ namespace earthshine::scenes {
 class SurfaceOffsets {
  public:
   SurfaceOffsets() = default;
-  explicit SurfaceOffsets(const Scene& scene);
+  // centre: of another pose of the scene; without it centre_of_detail().
+  explicit SurfaceOffsets(const Scene& scene, const std::optional<Vec3>& centre = std::nullopt);
 
   // Centre of detail: origin of the ray structure's coordinates, amid small objects near a camera.
   // Representable in single precision, so that subtracting it is exact nearby.

@@ -79,8 +79,11 @@ std::unique_ptr<StudyPart> part_of(const Source& source, const Common& common) {
     note(fmt::format("note: the study has several {}; the page shows the first",
                      moves ? "poses" : "scenes"));
   }
-  if (source.finished) check_unchanged(*source.finished, *parts.front());
-  return std::move(parts.front());
+  // Of a scene whose joints move: its first pose with a camera outside all bodies.
+  std::unique_ptr<StudyPart>& first =
+      *std::ranges::find_if(parts, [](const auto& pose) { return !pose->cameras.empty(); });
+  if (source.finished) check_unchanged(*source.finished, *first);
+  return std::move(first);
 }
 
 // Options that decide what a page has do not go with a server, which writes none.

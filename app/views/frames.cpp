@@ -14,6 +14,7 @@
 #include "app/views/kept_layers.h"
 #include "base/error.h"
 #include "base/free_memory.h"
+#include "radiosity/patches/posed_patches.h"
 #include "radiosity/refine.h"
 #include "raytrace/frame/first_hit.h"
 #include "raytrace/solve_control/wanted_error.h"
@@ -102,15 +103,19 @@ radiosity::SolveOptions study_solver(const scenes::Scene& scene, const Common& c
 }
 
 StudyFrames::StudyFrames(const StudyPart& part, const std::filesystem::path& folder,
-                         const Common& common, const PartCall& how)
+                         const Common& common, const PartCall& how, Poses* poses)
     : part_(part),
       common_(common),
       how_(how),
+      poses_(poses),
       folder_(folder),
       store_(folder),
       solver_(study_solver(part.basis_scene.scene, common)) {
   scene_cache_key_ = scene_cache_key(part.basis_scene);
   scene_cache_key_["solver"] = solver_cache_key(solver_);
+  if (part.first_pose != nullptr) {
+    scene_cache_key_["patches of"] = digest_of(scene_cache_key(part.first_pose->basis_scene));
+  }
 }
 
 double StudyFrames::wanted_error(const scenes::Scene& scene) {
@@ -178,14 +183,27 @@ radiosity::Solution StudyFrames::solve(StageTimes& times) const {
   (void)common_.progress->begin("solve " + part_.path, Work::StudySolve,
                                 static_cast<double>(basis.scene.triangles.size()));
   radiosity::Solution found = times.measure("solve", [&] {
-    const scenes::Scene cut = scene_to_cut(basis.scene);
-    const scenes::LightGroups groups = scenes::find_light_groups(cut);
-    const scenes::Effects effects = scenes::find_effects(cut, groups, {});
-    radiosity::Refined refined = radiosity::refine({cut, groups, effects, *part_.query}, solver_);
-    return radiosity::solve(basis.world(*part_.query), solver_, std::move(refined.patches));
+    radiosity::SolveVariant variant;
+    if (poses_ != nullptr) variant.kept = &poses_->kept;
+    radiosity::Patches patches =
+        poses_ != nullptr && poses_->patches ? *poses_->patches : first_patches();
+    if (poses_ != nullptr && !poses_->patches) poses_->patches = patches;
+    if (part_.first_pose != nullptr) {
+      patches = radiosity::posed_patches(std::move(patches), basis.scene);
+    }
+    return radiosity::solve(basis.world(*part_.query), solver_, std::move(patches), variant);
   });
   note_balance(found, solver_.balance);
   return found;
+}
+
+radiosity::Patches StudyFrames::first_patches() const {
+  const StudyPart& first = part_.first_pose != nullptr ? *part_.first_pose : part_;
+  const scenes::Scene cut = scene_to_cut(first.basis_scene.scene);
+  const scenes::LightGroups groups = scenes::find_light_groups(cut);
+  const scenes::Effects effects = scenes::find_effects(cut, groups, {});
+  const radiosity::SolveOptions solver = study_solver(first.basis_scene.scene, common_);
+  return radiosity::refine({cut, groups, effects, *first.query}, solver).patches;
 }
 
 radiosity::Solution StudyFrames::read_or_solve(const std::filesystem::path& file,
@@ -209,7 +227,10 @@ const radiosity::Solution& StudyFrames::solution(std::vector<StudyCost>& costs) 
   if (solution_) return *solution_;
   const LoadedScene& basis = part_.basis_scene;
   const std::filesystem::path file = solution_file_in(folder_, scene_cache_key_);
-  const radiosity::SolutionOrigin origin{basis.scene, basis.groups, solver_, EARTHSHINE_VERSION};
+  const scenes::Scene* first =
+      part_.first_pose != nullptr ? &part_.first_pose->basis_scene.scene : nullptr;
+  const radiosity::SolutionOrigin origin{basis.scene, basis.groups, solver_, EARTHSHINE_VERSION,
+                                         first};
   StudyCost cost{"solve " + part_.id, 0.0, 0, true};
   StageTimes times;
   if (how_.in_parts()) {

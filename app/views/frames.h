@@ -26,9 +26,14 @@ namespace earthshine::app {
 
 class StudyFrames {
  public:
-  // how: parts share one solution.
+  // Light that the poses of a scene leave for each other.
+  struct Poses {
+    std::optional<radiosity::Patches> patches;  // of the first pose
+    radiosity::KeptPose kept;
+  };
+  // how: parts share one solution. poses: outlives it; null: nothing is left for other poses.
   StudyFrames(const StudyPart& part, const std::filesystem::path& folder, const Common& common,
-              const PartCall& how);
+              const PartCall& how, Poses* poses = nullptr);
 
   // Wanted error of the conditions' pictures.
   [[nodiscard]] static double wanted_error(const scenes::Scene& scene);
@@ -81,6 +86,8 @@ class StudyFrames {
   [[nodiscard]] std::vector<std::vector<std::uint32_t>> regions_at(const StudyCamera& camera) const;
 
   [[nodiscard]] radiosity::Solution solve(StageTimes& times) const;
+  // Of the first pose of the scene.
+  [[nodiscard]] radiosity::Patches first_patches() const;
   // Reads the file's solution, or solves if it cannot be read.
   [[nodiscard]] radiosity::Solution read_or_solve(const std::filesystem::path& file,
                                                   const radiosity::SolutionOrigin& origin,
@@ -89,6 +96,7 @@ class StudyFrames {
   const StudyPart& part_;
   const Common& common_;
   const PartCall& how_;
+  Poses* poses_;
   std::filesystem::path folder_;
   ResultCache store_;
   radiosity::SolveOptions solver_;

@@ -118,12 +118,12 @@ void find_cameras(const studies::StudyFile& study, const std::vector<const scene
               (in_file ? part.path + " " : "") + found, allowed, remedy);
 }
 
-// The places of a study and the pose of the joints at each of them.
+// The places of a study and, where any moves, the pose of the joints at each of them.
 struct StudyWay {
   std::vector<studies::SkyPlace> places;
   std::vector<double> positions_deg, times_s;
   std::vector<scenes::Instant> moments;
-  std::vector<std::vector<scenes::JointState>> joints;  // of moments, where any moves
+  std::vector<std::vector<scenes::JointState>> joints;
 
   [[nodiscard]] StudyWay part(std::size_t first, std::size_t last) const {
     const auto cut = [&](const auto& list) {
@@ -134,6 +134,8 @@ struct StudyWay {
     return {cut(places), cut(positions_deg), cut(times_s), cut(moments), cut(joints)};
   }
 };
+
+Vec3 sun_of(const scenes::Scene& sky) { return sky.sun ? sky.sun->direction : Vec3(0.0, 0.0, 1.0); }
 
 // Sun and Earth, and the pose of all joints, at each moment.
 StudyWay find_moments(const studies::StudyFile& study, const scenes::Mission& mission,
@@ -159,7 +161,7 @@ StudyWay find_moments(const studies::StudyFile& study, const scenes::Mission& mi
     way.times_s.push_back(span.at(k) - span.start);
     way.moments.push_back(span.at(k));
     if (linkage != nullptr && linkage->moves()) {
-      way.joints.push_back(linkage->at(&mission, span.at(k)));
+      way.joints.push_back(linkage->at(&mission, span.at(k), sun_of(sky)));
     }
   }
   return way;
@@ -194,8 +196,12 @@ StudyWay find_way(const studies::StudyFile& study, const StudyPart& part) {
                "a study with positions needs a scene with [orbit]",
                "Add [orbit] with altitude_km, or leave the positions out");
   }
+  const scenes::Linkage* const linkage = scene.linkage.get();
   for (const double position : study.positions_deg) {
     scenes::move_along_orbit(sky, position);
+    if (linkage != nullptr && linkage->moves()) {  // what follows the Sun
+      way.joints.push_back(linkage->at(nullptr, {}, sun_of(sky)));
+    }
     way.places.push_back(studies::sky_of(sky));
     way.positions_deg.push_back(position);
     way.times_s.push_back(scenes::orbit_state(*scene.orbit, position).time_s);
@@ -259,17 +265,31 @@ SceneInput input_of(const studies::StudyFile& study, const StudyPart& part) {
   return input;
 }
 
-// The Moon moves through the sky of most attitudes, and a lamp of a study does not.
-void leave_moon_out(StudyPart& part, bool quiet) {
+// Moon and Earth move through the sky of most attitudes, and a lamp of a study does not.
+void leave_night_lights_out(StudyPart& part, bool quiet) {
   scenes::Scene& scene = part.loaded.scene;
+  const std::size_t lamps = scene.lamps.size();
   scene.moon.reset();
-  std::erase_if(scene.lamps, [](const scenes::Lamp& lamp) { return lamp.name == "moon"; });
-  scene.warnings.push_back("moonlight is left out of a study with several places in one pose");
+  std::erase_if(scene.lamps, [](const scenes::Lamp& lamp) {
+    return lamp.group == "moon" || lamp.group == "airglow";
+  });
+  if (scene.lamps.size() == lamps) return;
+  scene.warnings.push_back(
+      "moonlight and airglow are left out of a study with several places in one pose");
   if (!quiet) note("warning: " + scene.warnings.back());
 }
 
-// The scene's surfaces, cameras and lights for that way.
-void fill_part(const studies::StudyFile& study, const Common& common, StudyWay way,
+// The times, or positions, of one of several poses.
+std::string times_of(const StudyWay& way) {
+  const auto at = [&](std::size_t k) {
+    return place_text(way.positions_deg, way.moments, way.positions_deg[k]);
+  };
+  const std::size_t last = way.positions_deg.size() - 1;
+  return last == 0 ? at(0) : at(0) + " to " + at(last);
+}
+
+// The scene's surfaces, cameras and lights for that way; one_pose: of several.
+void fill_part(const studies::StudyFile& study, const Common& common, StudyWay way, bool one_pose,
                StudyPart& part) {
   scenes::Scene& scene = part.loaded.scene;
   add_cctv(study, scene);
@@ -279,12 +299,16 @@ void fill_part(const studies::StudyFile& study, const Common& common, StudyWay w
   }
   check_wanted(study, part);
   if (scene.linkage) part.pose = scenes::pose_text(scene);
-  if (scene.moon && way.places.size() > 1) leave_moon_out(part, common.quiet);
+  if (way.places.size() > 1) leave_night_lights_out(part, common.quiet);
   scenes::SceneUse use;
   use.cameras = chosen_cameras(study, scene);
   use.moves_along_orbit = !study.positions_deg.empty() || study.time;
-  part.query = std::make_unique<const scenes::RayQuery>(scene);
-  part.skipped = skip_hidden_cameras(scene, *part.query, use.cameras, common.quiet);
+  part.query = std::make_unique<const scenes::RayQuery>(
+      scene,
+      part.first_pose != nullptr ? std::optional(part.first_pose->query->centre()) : std::nullopt);
+  if (one_pose) part.skipped_at = times_of(way);
+  part.skipped =
+      skip_hidden_cameras(scene, *part.query, use.cameras, common.quiet, part.skipped_at);
   check_input(part.loaded, *part.query, use, common.quiet);
   find_cameras(study, use.cameras, common, part);
   part.positions_deg = std::move(way.positions_deg);
@@ -326,11 +350,19 @@ StudyParts prepare_parts(const studies::StudyFile& study, std::size_t index, con
       part->loaded = std::move(first->loaded);
     } else {
       SceneInput input = input_of(study, *first);
-      input.overrides.push_back("time.moment=" + scenes::utc_text(way.moments[begins[run]]));
+      const std::size_t at = begins[run];
+      input.overrides.push_back(way.moments.empty()
+                                    ? fmt::format("orbit.position_deg={}", way.positions_deg[at])
+                                    : "time.moment=" + scenes::utc_text(way.moments[at]));
       part->loaded = load(input, common.quiet || run > 0);
     }
-    fill_part(study, common, way.part(begins[run], begins[run + 1]), *part);
+    if (run > 0) part->first_pose = parts.front().get();
+    fill_part(study, common, way.part(begins[run], begins[run + 1]), begins.size() > 2, *part);
     parts.push_back(std::move(part));
+  }
+  if (std::ranges::all_of(parts, [](const auto& part) { return part->cameras.empty(); })) {
+    const StudyPart& part = *parts.front();  // throws for its first camera
+    raytrace::check_camera(part.loaded.scene, *part.query, *part.skipped.front());
   }
   return parts;
 }

@@ -41,8 +41,11 @@ struct StudyPart {
   std::unique_ptr<const studies::LightBasis> basis;
   LoadedScene basis_scene;  // of the basis, with its groups and effects
   std::unique_ptr<const scenes::RayQuery> query;
+  const StudyPart* first_pose =
+      nullptr;  // of its scene: whose patches it has; null: it is the first
   std::vector<StudyCamera> cameras;
   std::vector<const scenes::Camera*> skipped;  // inside a body
+  std::string skipped_at;                      // of one of several poses: its UTC; else empty
   std::vector<std::string> targets;
 
   // "orbit 30 deg", or along time "2026-03-01T12:00:00Z".

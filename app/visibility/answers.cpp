@@ -183,7 +183,7 @@ void add_configurations(const StudyPart& part, const studies::StudyFile& study,
 
 void add_configuration(std::vector<ViewingConfiguration>& ways, const ViewingConfiguration& way) {
   const auto same = std::find_if(ways.begin(), ways.end(), [&](const ViewingConfiguration& w) {
-    return !w.tai_s.empty() && w.scene == way.scene && w.camera == way.camera &&
+    return !w.positions_deg.empty() && w.scene == way.scene && w.camera == way.camera &&
            w.iris == way.iris && w.lamps == way.lamps;
   });
   if (same == ways.end()) {

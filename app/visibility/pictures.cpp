@@ -59,8 +59,7 @@ std::size_t setting_of(const StudyPart& part, const PictureWish& wish) {
 
 // Whether the part has the wish's camera and place.
 bool can_draw(const StudyPart& part, const PictureWish& wish) {
-  return camera_of(part, wish.camera) != nullptr &&
-         place_of(part, wish) < part.basis->places().size();
+  return camera_of(part, wish.camera) != nullptr && has_place(part, wish);
 }
 
 constexpr const char* same_end = "-same.png";  // by one white for all
@@ -110,6 +109,10 @@ base::Image draw_distributed(const StudyPart& part, const StudyCamera& camera,
 
 }  // namespace
 
+bool has_place(const StudyPart& part, const PictureWish& wish) {
+  return place_of(part, wish) < part.basis->places().size();
+}
+
 void check_pictures(const studies::StudyFile& study, const std::vector<const StudyPart*>& parts) {
   for (const PictureWish& wish : study.pictures) {
     const auto refuse = [&](const std::string& found, const std::string& allowed) {
@@ -126,7 +129,12 @@ void check_pictures(const studies::StudyFile& study, const std::vector<const Stu
     }
     if (part == parts.end()) {
       std::vector<std::string> names;
-      for (const StudyCamera& camera : parts.front()->cameras) names.push_back(camera.camera->name);
+      for (const StudyPart* p : parts) {
+        for (const StudyCamera& camera : p->cameras) {
+          if (std::ranges::find(names, camera.camera->name) == names.end())
+            names.push_back(camera.camera->name);
+        }
+      }
       refuse(fmt::format("names camera {}, which the study does not look through",
                          scenes::in_quotes(wish.camera)),
              "its cameras are " + scenes::listed(names));

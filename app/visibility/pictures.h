@@ -14,6 +14,9 @@
 
 namespace earthshine::app {
 
+// Whether the part has the request's place.
+[[nodiscard]] bool has_place(const StudyPart& part, const studies::PictureWish& wish);
+
 // Throws base::Error (Input) if a request names a camera, a lamp setting or a position that the
 // study does not have. parts: of all scenes; the first one with the camera draws it.
 void check_pictures(const studies::StudyFile& study, const std::vector<const StudyPart*>& parts);

@@ -73,8 +73,14 @@ class Runner {
     const Interrupt interrupt;
     ways_.resize(task_.study.wanted.size());
     for (const StudyPart* part : parts_) expect_work(*part);
-    for (const StudyPart* part : parts_) {
-      StudyFrames frames(*part, fs::path(task_.folder) / points_folder, common_, task_.part);
+    std::optional<StudyFrames::Poses> poses;
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
+      const StudyPart* const part = parts_[k];
+      const bool more = k + 1 < parts_.size() && parts_[k + 1]->first_pose != nullptr;
+      if (part->first_pose == nullptr) poses.reset();
+      if (!poses && more) poses.emplace();
+      StudyFrames frames(*part, fs::path(task_.folder) / points_folder, common_, task_.part,
+                         poses ? &*poses : nullptr);
       StudyConditions conditions(*part, task_.study, frames.store(), common_);
       for (const StudyCamera& camera : part->cameras) {
         if (!look_through(*part, camera, frames, conditions)) results_.complete = false;
@@ -93,6 +99,7 @@ class Runner {
  private:
   void expect_work(const StudyPart& part) {
     const LoadedScene& basis = part.basis_scene;
+    if (part.cameras.empty()) return;
     common_.progress->expect(Work::StudySolve, static_cast<double>(basis.scene.triangles.size()));
     for (const StudyCamera& camera : part.cameras) {
       const double pixels = double(camera.columns) * camera.rows;
@@ -189,19 +196,31 @@ void note_unused(const StudyTask& task) {
   }
 }
 
-// Pictures by cameras that every scene skips are skipped too.
-void drop_pictures_of_skipped(studies::StudyFile& study,
-                              const std::vector<const StudyPart*>& parts) {
+// Pictures by cameras that are skipped wherever the picture's place is are skipped too.
+void drop_pictures_of_skipped(studies::StudyFile& study, const std::vector<const StudyPart*>& parts,
+                              bool quiet) {
   std::erase_if(study.pictures, [&](const studies::PictureWish& wish) {
     const auto is_wanted = [&](const auto& camera) { return camera.name == wish.camera; };
-    const bool drawn = std::ranges::any_of(parts, [&](const StudyPart* part) {
-      return std::ranges::any_of(part->cameras,
-                                 [&](const StudyCamera& c) { return is_wanted(*c.camera); });
-    });
-    return !drawn && std::ranges::any_of(parts, [&](const StudyPart* part) {
-      return std::ranges::any_of(part->skipped,
-                                 [&](const scenes::Camera* c) { return is_wanted(*c); });
-    });
+    std::string skipped_at;
+    bool skipped = false;
+    for (const StudyPart* part : parts) {
+      if (!has_place(*part, wish)) continue;
+      if (std::ranges::any_of(part->cameras,
+                              [&](const StudyCamera& c) { return is_wanted(*c.camera); })) {
+        return false;
+      }
+      if (!std::ranges::any_of(part->skipped,
+                               [&](const scenes::Camera* c) { return is_wanted(*c); })) {
+        continue;
+      }
+      skipped = true;
+      skipped_at = part->skipped_at;
+    }
+    if (skipped && !quiet && !skipped_at.empty()) {
+      note(fmt::format("skipped: [[picture]] {}: camera {} is inside a body at {}",
+                       scenes::in_quotes(wish.name), scenes::in_quotes(wish.camera), skipped_at));
+    }
+    return skipped;
   });
 }
 
@@ -221,8 +240,10 @@ StudyParts prepare(StudyTask& task, const Common& common) {
   }
   const std::string& scene = parts.front()->loaded.scene.name;
   if (task.study.path.empty() && !scene.empty()) task.study.name = scene;
-  drop_pictures_of_skipped(task.study, pointers(parts));
-  fill_pictures(task.study, *parts.front());
+  drop_pictures_of_skipped(task.study, pointers(parts), common.quiet);
+  const auto seeing =
+      std::ranges::find_if(parts, [](const auto& part) { return !part->cameras.empty(); });
+  fill_pictures(task.study, **seeing);
   check_pictures(task.study, pointers(parts));
   return parts;
 }
@@ -239,9 +260,14 @@ std::optional<StudyResults> run_study(StudyTask task, const Common& common) {
   std::vector<std::string> skipped;
   for (const auto& part : parts) {
     for (const scenes::Camera* camera : part->skipped) {
-      skipped.push_back(parts.size() > 1 ? camera->name + " of " + part->path : camera->name);
-      part->loaded.scene.warnings.push_back(fmt::format(
-          "camera {} is inside a body and was skipped", scenes::in_quotes(camera->name)));
+      const std::string at = part->skipped_at.empty() ? "" : " at " + part->skipped_at;
+      skipped.push_back(camera->name + (task.study.scenes.size() > 1 ? " of " + part->path : "") +
+                        at);
+      // Notes are those of a scene's first pose.
+      const auto first = std::ranges::find_if(
+          parts, [&](const auto& other) { return other->scene == part->scene; });
+      (*first)->loaded.scene.warnings.push_back(fmt::format(
+          "camera {} is inside a body{} and was skipped", scenes::in_quotes(camera->name), at));
     }
   }
   const std::vector<std::string> files = {study_file, results_table, report_file};

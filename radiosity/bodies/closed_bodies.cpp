@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 
@@ -74,6 +75,16 @@ ClosedSurface::ClosedSurface(std::span<const Vec3> corners)
   }
 }
 
+bool ClosedSurface::is_of(std::span<const Vec3> corners) const {
+  bool same = corners.size() == 3 * triangles_.size();
+  for (std::size_t k = 0; same && k < triangles_.size(); ++k) {
+    const Corners& t = triangles_[k];
+    same = t.a == turned(corners[3 * k]) && t.b == turned(corners[3 * k + 1]) &&
+           t.c == turned(corners[3 * k + 2]);
+  }
+  return same;
+}
+
 std::size_t ClosedSurface::cell(double x, int way) const {
   const double index = (x - corner_[way]) / cell_size_[way];
   return static_cast<std::size_t>(std::clamp(index, 0.0, double(cells_ - 1)));
@@ -115,7 +126,8 @@ void ClosedBodies::find_holes(const scenes::Scene& scene) {
   }
 }
 
-ClosedBodies::ClosedBodies(const scenes::Scene& scene, const Vec3& centre)
+ClosedBodies::ClosedBodies(const scenes::Scene& scene, const Vec3& centre,
+                           const ClosedBodies* earlier)
     : centre_(centre), coincident_(scene) {
   find_holes(scene);
   const ClosedParts parts = find_closed_parts(scene);
@@ -135,22 +147,47 @@ ClosedBodies::ClosedBodies(const scenes::Scene& scene, const Vec3& centre)
         stopper != stoppers.end()) {
       for (const Vec3& p : stopper->second) corners.push_back(p - centre);
     }
-    ClosedSurface surface(corners);
-    const double least = least_volume_share * surface.box_m3();
-    if (surface.volume_m3() > least) {
-      bodies_.push_back({std::move(surface), {}});
-    } else if (surface.volume_m3() < -least) {
+    SharedSurface& surface = of_triangle_[triangles.front()];
+    if (earlier != nullptr) {
+      const auto known = earlier->of_triangle_.find(triangles.front());
+      if (known != earlier->of_triangle_.end() && known->second->is_of(corners)) {
+        surface = known->second;
+      }
+    }
+    if (!surface) surface = std::make_shared<const ClosedSurface>(corners);
+    const double least = least_volume_share * surface->box_m3();
+    if (surface->volume_m3() > least) {
+      bodies_.push_back({surface, {}});
+    } else if (surface->volume_m3() < -least) {
       for (const std::uint32_t t : triangles) walls[t] = 1;
-      cavities_.push_back(std::move(surface));
+      cavities_.push_back(surface);
     }
   }
   for (Body& body : bodies_) {
     for (std::uint32_t c = 0; c < cavities_.size(); ++c) {
-      if (cavities_[c].lies_in_box_of(body.surface)) body.cavities.push_back(c);
+      if (cavities_[c]->lies_in_box_of(*body.surface)) body.cavities.push_back(c);
     }
   }
   leave_out_lit(scene);
   dark_outside_ = !cavities_.empty() && light_is_in_rooms(scene, parts.of, walls);
+}
+
+std::vector<std::pair<Vec3, Vec3>> differing_bodies(const ClosedBodies& a, const ClosedBodies& b) {
+  std::vector<std::pair<Vec3, Vec3>> boxes;
+  const auto surfaces_of = [](const ClosedBodies& all) {
+    std::vector<const ClosedSurface*> found;
+    for (const auto& body : all.bodies_) found.push_back(body.surface.get());
+    for (const auto& cavity : all.cavities_) found.push_back(cavity.get());
+    std::ranges::sort(found);
+    return found;
+  };
+  std::vector<const ClosedSurface*> differ;
+  std::ranges::set_symmetric_difference(surfaces_of(a), surfaces_of(b), std::back_inserter(differ));
+  for (const ClosedSurface* surface : differ) {
+    const auto [low, high] = surface->box();
+    boxes.emplace_back(low + a.centre_, high + a.centre_);
+  }
+  return boxes;
 }
 
 // A lamp inside means light inside: the body is a room with inverted faces.
@@ -167,7 +204,7 @@ void ClosedBodies::leave_out_lit(const scenes::Scene& scene) {
 
 bool ClosedBodies::in_room(const Vec3& point) const {
   return std::any_of(cavities_.begin(), cavities_.end(),
-                     [&](const ClosedSurface& room) { return room.winding(point) < 0; });
+                     [&](const SharedSurface& room) { return room->winding(point) < 0; });
 }
 
 // Whether the sky is dark, every lamp is in a room, and every emitting surface is connected with a
@@ -202,7 +239,7 @@ std::vector<std::uint32_t> ClosedBodies::near(const Patches& patches, std::uint3
   high -= centre_;
   std::vector<std::uint32_t> found;
   for (std::uint32_t b = 0; b < bodies_.size(); ++b) {
-    if (bodies_[b].surface.may_wind(low - margin_m, high + margin_m)) found.push_back(b);
+    if (bodies_[b].surface->may_wind(low - margin_m, high + margin_m)) found.push_back(b);
   }
   if (dark_outside_) found.push_back(outside);
   const Facet& facet = patches.facets[patches.facet[patch]];
@@ -234,9 +271,9 @@ bool ClosedBodies::cover(const Vec3& point, std::span<const std::uint32_t> bodie
     if (b >= first_front) return coincident_.covers(b - first_front, true, point + centre_);
     if (b >= first_hole) return in_hole(point, b - first_hole);
     const Body& body = bodies_[b];
-    return body.surface.winding(point) > 0 &&
+    return body.surface->winding(point) > 0 &&
            std::none_of(body.cavities.begin(), body.cavities.end(),
-                        [&](std::uint32_t c) { return cavities_[c].winding(point) < 0; });
+                        [&](std::uint32_t c) { return cavities_[c]->winding(point) < 0; });
   });
 }
 

@@ -15,7 +15,10 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "radiosity/patches/patches.h"
@@ -41,6 +44,9 @@ class ClosedSurface {
     return glm::all(glm::greaterThanEqual(low_, other.low_)) &&
            glm::all(glm::lessThanEqual(high_, other.high_));
   }
+  // Whether it is made of these corners.
+  [[nodiscard]] bool is_of(std::span<const Vec3> corners) const;
+  [[nodiscard]] std::pair<Vec3, Vec3> box() const { return {low_, high_}; }
   [[nodiscard]] double volume_m3() const { return volume_m3_; }  // positive if oriented outward
   [[nodiscard]] double box_m3() const {
     const Vec3 size = high_ - low_;
@@ -75,7 +81,9 @@ class ClosedSurface {
 class ClosedBodies {
  public:
   // Points, here and below, are relative to `centre`. A body that contains a lamp is excluded.
-  ClosedBodies(const scenes::Scene& scene, const Vec3& centre);
+  // earlier: of another pose, whose surfaces are used again where they are equal; may be null.
+  ClosedBodies(const scenes::Scene& scene, const Vec3& centre,
+               const ClosedBodies* earlier = nullptr);
 
   // Possible covers of points within margin_m of a patch: bodies, the dark outside, faces on the
   // patch's own triangles, and the holes of their opacity mask.
@@ -83,10 +91,16 @@ class ClosedBodies {
                                                 double margin_m) const;
   [[nodiscard]] bool cover(const Vec3& point, std::span<const std::uint32_t> bodies) const;
   [[nodiscard]] const Vec3& centre() const { return centre_; }
+  // Everything outside of rooms is covered.
+  [[nodiscard]] bool has_dark_outside() const { return dark_outside_; }
+  // Boxes, in the scene, of surfaces that cover points in one of two poses only.
+  friend std::vector<std::pair<Vec3, Vec3>> differing_bodies(const ClosedBodies& a,
+                                                             const ClosedBodies& b);
 
  private:
+  using SharedSurface = std::shared_ptr<const ClosedSurface>;
   struct Body {
-    ClosedSurface surface;
+    SharedSurface surface;
     std::vector<std::uint32_t> cavities;
   };
   void find_holes(const scenes::Scene& scene);
@@ -99,7 +113,8 @@ class ClosedBodies {
 
   Vec3 centre_;
   std::vector<Body> bodies_;
-  std::vector<ClosedSurface> cavities_;  // including rooms
+  std::vector<SharedSurface> cavities_;                 // including rooms
+  std::map<std::uint32_t, SharedSurface> of_triangle_;  // all surfaces by their first triangle
   bool dark_outside_ = false;
   scenes::OpacityMasks masks_;
   struct Corners {
@@ -108,5 +123,8 @@ class ClosedBodies {
   std::vector<Corners> masked_;  // per masked triangle
   scenes::CoincidentFaces coincident_;
 };
+
+[[nodiscard]] std::vector<std::pair<Vec3, Vec3>> differing_bodies(const ClosedBodies& a,
+                                                                  const ClosedBodies& b);
 
 }  // namespace earthshine::radiosity

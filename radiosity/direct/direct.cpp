@@ -220,7 +220,7 @@ class DirectStage {
  private:
   [[nodiscard]] Sampled sample(std::span<const Source> sources) const {
     return sample_patches(query_, patches_, factors_.open, sources, options_.seed,
-                          light_.shadow_rays, factors_.shares.receivers());
+                          light_.shadow_rays, factors_.shares.receivers(), options_.kept);
   }
 
   // Stores the samples that the first rank has.

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "radiosity/direct/shadowed_samples.h"
 #include "radiosity/factors/form_factors.h"
 #include "radiosity/patches/patches.h"
 #include "scenes/effects/world.h"
@@ -58,6 +59,7 @@ struct DirectOptions {
   int points_per_patch = 16;  // receiver points for distant sources; 16 times more near a source
   int flux_rays = 1 << 16;    // from each lamp, to estimate the escaped flux
   std::uint64_t seed = 0;
+  KeptSamples* kept = nullptr;  // of an earlier pose, replaced by this one's; not with ranks
 };
 
 // Per patch the mean over its open part (factors.open). The Earth uses factors.sky_illuminance if

@@ -96,6 +96,54 @@ bool sees_nothing_of(const Source& source, std::span<const scenes::FlatMirror> m
          });
 }
 
+bool is_same(const scenes::Lamp& a, const scenes::Lamp& b) {
+  return a.kind == b.kind && a.position == b.position && a.axis == b.axis &&
+         a.intensity_cd == b.intensity_cd && a.beam_deg == b.beam_deg &&
+         a.field_deg == b.field_deg && a.edge_u == b.edge_u && a.edge_v == b.edge_v &&
+         a.radius_m == b.radius_m && a.exitance == b.exitance && a.c0 == b.c0 &&
+         a.photometry == b.photometry;
+}
+
+bool are_same(std::span<const scenes::FlatMirror> a, std::span<const scenes::FlatMirror> b) {
+  return std::ranges::equal(a, b, [](const scenes::FlatMirror& x, const scenes::FlatMirror& y) {
+    return x.point == y.point && x.normal == y.normal && x.centre == y.centre &&
+           x.radius_m == y.radius_m;
+  });
+}
+
+double radius_of(const scenes::Lamp& lamp) {
+  return lamp.radius_m + 0.5 * (glm::length(lamp.edge_u) + glm::length(lamp.edge_v));
+}
+
+double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 way = b - a;
+  const double t = std::clamp(glm::dot(p - a, way) / glm::dot(way, way), 0.0, 1.0);
+  return glm::length(p - a - t * way);
+}
+
+// Whether nothing that moved is on any path of light from the lamp to the patch.
+bool is_clear(const MovedParts& moved, const scenes::Lamp& lamp,
+              std::span<const scenes::FlatMirror> mirrors, const Patches& patches,
+              std::uint32_t patch) {
+  const auto [low, high] = patches.box(patch);
+  const Vec3 middle = 0.5 * (low + high);
+  const double radius = 0.5 * glm::length(high - low), lamp_radius = radius_of(lamp);
+  if (moved.between(middle, radius, lamp.position, lamp_radius)) return false;
+  return std::ranges::none_of(mirrors, [&](const scenes::FlatMirror& mirror) {
+    if (mirror.height_m(middle) < -radius || mirror.height_m(lamp.position) < -lamp_radius) {
+      return false;
+    }
+    const Vec3 image = mirror.image(lamp.position);
+    // Light of this mirror passes its ball.
+    if (distance_to_segment(mirror.centre, middle, image) >
+        mirror.radius_m + std::max(radius, lamp_radius)) {
+      return false;
+    }
+    return moved.between(middle, radius, image, lamp_radius) ||
+           moved.between(mirror.image(middle), radius, lamp.position, lamp_radius);
+  });
+}
+
 }  // namespace
 
 void take_samples(const Source& source, std::span<const scenes::FlatMirror> mirrors,
@@ -124,11 +172,24 @@ void take_samples(const Source& source, std::span<const scenes::FlatMirror> mirr
 
 Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, const OpenParts& open,
                        std::span<const Source> sources, std::uint64_t seed, std::uint64_t& rays,
-                       base::Receivers receivers) {
+                       base::Receivers receivers, KeptSamples* kept) {
   const std::size_t each = sources.size();
   const std::span<const scenes::FlatMirror> mirrors = query.specular_paths().mirrors();
   Sampled sampled{std::vector<Rgb>(patches.count() * each, Rgb(0.0)),
-                  std::vector<double>(patches.count() * each, 0.0)};
+                  std::vector<double>(patches.count() * each, 0.0),
+                  std::vector<std::uint32_t>(patches.count(), 0)};
+  const scenes::Lamp* const lamp = sources.front().lamp;
+  const Sampled* known = nullptr;  // of the earlier pose
+  if (kept != nullptr && kept->moved != nullptr && lamp != nullptr) {
+    const auto found = kept->of_source.find(sources.front().key);
+    if (found != kept->of_source.end() && is_same(found->second.lamp, *lamp) &&
+        are_same(kept->mirrors, mirrors)) {
+      known = &found->second.sampled;
+    }
+  }
+  const auto open_then = [&](std::size_t i) {
+    return kept->open_share.empty() ? 1.0 : kept->open_share[i];
+  };
   constexpr std::size_t chunk = 256;
   std::vector<std::uint64_t> chunk_rays((patches.count() + chunk - 1) / chunk, 0);
   const auto sample = [&](std::size_t begin, std::size_t end) {
@@ -138,6 +199,14 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
       const auto patch = static_cast<std::uint32_t>(i);
       const double share = open.share.empty() ? 1.0 : open.share[i];
       if (share <= 0.0) continue;
+      if (known != nullptr && kept->unmoved[i] != 0 && open_then(i) == share &&
+          is_clear(*kept->moved, *lamp, mirrors, patches, patch)) {
+        sampled.illuminance_lx[i] = known->illuminance_lx[i];
+        sampled.variance[i] = known->variance[i];
+        sampled.rays[i] = known->rays[i];
+        chunk_rays[begin / chunk] += known->rays[i];
+        continue;
+      }
       shining.clear();
       for (std::size_t s = 0; s < each; ++s) {
         if (!sees_nothing_of(sources[s], mirrors, patches, patch)) shining.push_back(s);
@@ -173,6 +242,7 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
         sampled.variance[i * each + s] =
             std::max(0.0, receiver.sum_of_squares(s) - y * y / n) / (n * std::max(1.0, n - 1.0));
       }
+      sampled.rays[i] = static_cast<std::uint32_t>(receiver.rays());
       chunk_rays[begin / chunk] += receiver.rays();
     }
   };
@@ -185,6 +255,9 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
       },
       receivers);
   for (const std::uint64_t count : chunk_rays) rays += count;
+  if (kept != nullptr && lamp != nullptr) {
+    kept->of_source[sources.front().key] = {*lamp, sampled};
+  }
   return sampled;
 }
 

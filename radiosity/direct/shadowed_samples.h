@@ -5,11 +5,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "base/ranks/ranks.h"
+#include "radiosity/bodies/moved_parts.h"
 #include "radiosity/patches/patches.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/ray_query.h"
@@ -37,6 +39,7 @@ struct Source {
       cluster;
   std::function<double(const Vec3& point)> distance_m;  // empty for the sky
   std::optional<Disc> disc;                             // of a Sun
+  const scenes::Lamp* lamp = nullptr;                   // a single lamp with a position
 
   // Whether the disc is completely below the horizon of a surface with this normal.
   [[nodiscard]] bool is_below_horizon(const Vec3& normal) const {
@@ -47,6 +50,21 @@ struct Source {
 struct Sampled {
   std::vector<Rgb> illuminance_lx;  // patch * sources + source
   std::vector<double> variance;     // of its luminance-weighted mean, as for random points
+  std::vector<std::uint32_t> rays;  // per patch
+};
+
+// Samples of the lamps that one pose of a scene leaves for the next one: the same where neither the
+// patch nor the lamp moved and nothing that moved is between them, straight or by a flat mirror.
+struct KeptSamples {
+  struct OfLamp {
+    scenes::Lamp lamp;
+    Sampled sampled;
+  };
+  std::map<std::uint64_t, OfLamp> of_source;  // by key
+  std::vector<scenes::FlatMirror> mirrors;
+  std::vector<double> open_share;     // OpenParts::share
+  const MovedParts* moved = nullptr;  // since then; null: nothing may be kept
+  std::vector<char> unmoved;          // MovedParts::unmoved
 };
 
 // Replaces `samples` by the source's samples at a surface, direct and by flat mirrors.
@@ -57,10 +75,12 @@ void take_samples(const Source& source, std::span<const scenes::FlatMirror> mirr
 // Owen-Sobol points in four dimensions (on the patch, on the source), keyed by patch and first
 // source. Covered points are skipped for the next of the sequence; a completely covered patch gets
 // 0. Adds the number of rays to `rays`. sources: several only if all are in the sky, with equal
-// numbers of points. receivers: the rank that gets all results.
+// numbers of points. receivers: the rank that gets all results. kept: of an earlier pose; its
+// samples of a lamp are used, and replaced by this one's.
 [[nodiscard]] Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches,
                                      const OpenParts& open, std::span<const Source> sources,
                                      std::uint64_t seed, std::uint64_t& rays,
-                                     base::Receivers receivers = base::Receivers::All);
+                                     base::Receivers receivers = base::Receivers::All,
+                                     KeptSamples* kept = nullptr);
 
 }  // namespace earthshine::radiosity

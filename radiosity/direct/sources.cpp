@@ -71,6 +71,7 @@ LightSource lamp_source(const scenes::Lamp& lamp, std::uint64_t key, std::size_t
   source.key = key;
   source.group = group;
   source.has_size = scenes::is_wide(lamp.kind);
+  source.lamp = &lamp;
   source.points = points * (source.has_size ? 4 : 1);
   if (lamp.kind == scenes::LampKind::Spot) {
     source.sample = [&lamp, cone = scenes::spot_cone(lamp)](const Vec3& point, double, double) {

@@ -14,6 +14,7 @@
 #include <bit>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,8 @@
 #include "scenes/sky/sky_cells.h"
 
 namespace earthshine::radiosity {
+
+struct KeptRows;  // kept_rows.h
 
 struct FormFactorOptions {
   int rays_per_patch = 1024;  // rounded up to a power of two, 8 or more
@@ -34,6 +37,8 @@ struct FormFactorOptions {
   // Patches of objects with few patches cast more rays each (patch_rays.h).
   bool know_objects = false;
   const scenes::SkyCells* sky_cells = nullptr;  // sky light is stored for each cell
+  KeptRows* kept = nullptr;                     // rows of an earlier pose, replaced by this one's
+  std::shared_ptr<const ClosedBodies> bodies = {};  // of the scene; null: made on demand
 };
 
 struct FormFactors {

@@ -30,6 +30,24 @@ Vec3 direction(const RayPacket& packet, std::size_t k) {
 
 }  // namespace
 
+HitTargets::HitTargets(const Patches& patches, const std::vector<bool>& passes_on)
+    : patches_(patches), targets_(patches.of_triangle.size()) {
+  for (std::size_t k = 0; k < targets_.size(); ++k) {
+    const Facet& facet = patches.facets[patches.of_triangle[k]];
+    Target& target = targets_[k];
+    target.s_count = facet.s_count;
+    target.t_count = facet.t_count;
+    target.first_front = facet.first_front;
+    target.first_back = facet.first_back;
+    target.tree = facet.tree;
+    target.passes_on = passes_on[facet.material] ? 1 : 0;
+    target.kind =
+        static_cast<std::uint8_t>(facet.is_cluster()    ? cluster_kind
+                                  : facet.parallelogram ? triangle_kinds + patches.second_half[k]
+                                                        : facet.apex);
+  }
+}
+
 RowCaster::RowCaster(const scenes::Scene& scene, const scenes::RayQuery& query,
                      const Patches& patches, const std::vector<double>& kept,
                      const FormFactorOptions& options, std::uint32_t rays,
@@ -48,14 +66,17 @@ RowCaster::RowCaster(const scenes::Scene& scene, const scenes::RayQuery& query,
       replicate_(options.replicate),
       leave_out_covered_(options.leave_out_covered),
       dark_sky_(!scenes::has_light_outside(scene)),
+      kept_rows_(options.kept),
       rays_(patches, query, rays),
-      targets_(patches, materials_that_pass_on(scene)) {}
+      targets_(patches, materials_that_pass_on(scene)),
+      bodies_(options.bodies) {}
 
 void RowCaster::cast(std::uint32_t patch, HitCounter& counter, Band& band) const {
   Row row;
   base::Key key(seed_, base::Stream::FormFactor, patch);
   if (replicate_ != 0) key = key.with(replicate_);
   const PatchRays::Sender sender = rays_.sender(patch, key);
+  if (kept_rows_ != nullptr && restore(patch, sender, band)) return;
   std::vector<std::uint32_t> near;
   const std::size_t first_part = band.sky_illuminance.size();
   band.sky_illuminance.resize(first_part + sky_parts_, Rgb(0.0));
@@ -64,22 +85,72 @@ void RowCaster::cast(std::uint32_t patch, HitCounter& counter, Band& band) const
   if (!trace(patch, sender, leave_out_covered_ && !looks_first, near, row, counter, band)) {
     counter.clear();
     band.backs_met.clear();
+    band.missed.clear();
     row = {};
     std::fill(band.sky_illuminance.end() - static_cast<std::ptrdiff_t>(sky_parts_),
               band.sky_illuminance.end(), Rgb(0.0));
     trace(patch, sender, false, near, row, counter, band);
   }
+  const std::size_t before = band.column.size();
+  counter.take(band.column, band.hits);
+  row.entries = static_cast<std::uint32_t>(band.column.size() - before);
+  if (kept_rows_ != nullptr) keep(patch, row, band);
+  close(row, first_part, band);
+}
+
+void RowCaster::close(Row row, std::size_t first_part, Band& band) const {
   if (row.open > 0 && is_exposed(row.black / row.open)) {
     for (const std::uint32_t object : band.backs_met) band.back_hits[object] += 1.0;
   }
   band.backs_met.clear();
-  const std::size_t before = band.column.size();
-  counter.take(band.column, band.hits);
-  row.entries = static_cast<std::uint32_t>(band.column.size() - before);
+  band.missed.clear();
   for (std::size_t k = first_part; row.open > 0 && k < band.sky_illuminance.size(); ++k) {
     band.sky_illuminance[k] *= base::pi / row.open;
   }
   band.rows.push_back(row);
+}
+
+void RowCaster::keep(std::uint32_t patch, const Row& row, const Band& band) const {
+  KeptRow& kept = kept_rows_->rows[patch];
+  const auto last = [&](const auto& all) { return all.end() - std::ptrdiff_t(row.entries); };
+  kept = {row,
+          {last(band.column), band.column.end()},
+          {last(band.hits), band.hits.end()},
+          band.backs_met,
+          band.missed,
+          row.rays == row.sent};
+}
+
+bool RowCaster::restore(std::uint32_t patch, const PatchRays::Sender& first, Band& band) const {
+  const KeptRow& kept = kept_rows_->rows[patch];
+  if (kept_rows_->moved == nullptr || kept_rows_->unmoved[patch] == 0 || !kept.is_plain) {
+    return false;
+  }
+  const std::size_t first_part = band.sky_illuminance.size();
+  band.sky_illuminance.resize(first_part + sky_parts_, Rgb(0.0));
+  PatchRays::Sender sender = first;
+  RayPacket packet;
+  Row row;
+  const auto run = static_cast<std::uint32_t>(rays_.count() / RayPacket::width);
+  for (std::uint32_t n = 0; n < kept.row.sent / RayPacket::width; ++n) {
+    if (n > 0 && n % run == 0) rays_.go_to_run(n / run, sender);
+    rays_.make(sender, n % run * RayPacket::width, packet);
+    for (std::uint32_t k = 0; k < RayPacket::width; ++k) {
+      if (kept_rows_->moved->on_ray(origin(packet, k) + query_.centre(), direction(packet, k))) {
+        band.sky_illuminance.resize(first_part);
+        return false;
+      }
+      const std::size_t ray = n * RayPacket::width + k;
+      if (sky_ && ray / 64 < kept.missed.size() && (kept.missed[ray / 64] >> ray % 64 & 1U) != 0) {
+        escape(direction(packet, k), 1.0, row, band);
+      }
+    }
+  }
+  band.column.insert(band.column.end(), kept.column.begin(), kept.column.end());
+  band.hits.insert(band.hits.end(), kept.hits.begin(), kept.hits.end());
+  band.backs_met = kept.backs;
+  close(kept.row, first_part, band);
+  return true;
 }
 
 // Counts the patch's rays, except from points covered by the bodies `near`. look_out: stops at the
@@ -104,7 +175,7 @@ bool RowCaster::trace(std::uint32_t patch, PatchRays::Sender sender, bool look_o
       for (const std::uint32_t triangle : hits[n % 2].triangle) targets_.prefetch(triangle);
     }
     if (n == 0) continue;
-    count_hits(packets[(n - 1) % 2], hits[(n - 1) % 2], near, row, counter, band);
+    count_hits(packets[(n - 1) % 2], hits[(n - 1) % 2], n - 1, near, row, counter, band);
     if (!look_out || !(row.black > 0.0 || (row.sky > 0.0 && dark_sky_))) continue;
     look_out = false;
     near = bodies_near(patch);
@@ -121,6 +192,7 @@ bool RowCaster::may_be_covered(std::uint32_t patch) const {
 
 std::shared_ptr<const ClosedBodies> RowCaster::bodies() const {
   std::call_once(bodies_made_, [this] {
+    if (bodies_) return;
     bodies_ = std::make_shared<const ClosedBodies>(scene_, query_.centre());
   });
   return bodies_;
@@ -130,7 +202,7 @@ std::vector<std::uint32_t> RowCaster::bodies_near(std::uint32_t patch) const {
   return bodies()->near(patches_, patch, 2.0 * patch_offset_m(patches_, query_, patch));
 }
 
-void RowCaster::count_hits(const RayPacket& packet, const HitPacket& hits,
+void RowCaster::count_hits(const RayPacket& packet, const HitPacket& hits, std::uint32_t number,
                            std::span<const std::uint32_t> near, Row& row, HitCounter& counter,
                            Band& band) const {
   for (std::size_t k = 0; k < RayPacket::width; ++k) {
@@ -139,6 +211,11 @@ void RowCaster::count_hits(const RayPacket& packet, const HitPacket& hits,
     const std::uint32_t triangle = hits.triangle[k];
     if (triangle == scenes::no_triangle) {
       escape(direction(packet, k), 1.0, row, band);
+      if (kept_rows_ != nullptr) {
+        const std::size_t ray = number * RayPacket::width + k;
+        if (band.missed.size() <= ray / 64) band.missed.resize(ray / 64 + 1, 0);
+        band.missed[ray / 64] |= std::uint64_t{1} << ray % 64;
+      }
       continue;
     }
     if (targets_.passes_on(triangle)) {

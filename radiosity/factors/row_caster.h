@@ -11,25 +11,17 @@
 #include "radiosity/bodies/closed_bodies.h"
 #include "radiosity/factors/form_factors.h"
 #include "radiosity/factors/hit_targets.h"
+#include "radiosity/factors/kept_rows.h"
 #include "radiosity/factors/patch_rays.h"
 
 namespace earthshine::radiosity {
-
-// Results of one row besides its hits.
-struct Row {
-  std::uint32_t entries = 0;
-  double black = 0.0, sky = 0.0;  // in rays
-  double landed = 0.0;            // in rays, that end on patches
-  std::uint64_t rays = 0;
-  std::uint32_t sent = 0;  // rays cast
-  std::uint32_t open = 0;  // rays cast from open points: these count
-};
 
 // The rows of one chunk of patches.
 struct Band {
   std::vector<Row> rows;
   std::vector<double> back_hits;         // per object
   std::vector<std::uint32_t> backs_met;  // of the present row: the objects
+  std::vector<std::uint64_t> missed;     // of the present row, as KeptRow::missed
   std::vector<std::uint32_t> column;
   std::vector<float> hits;
   std::vector<Rgb> sky_illuminance;  // for each row and cell of the sky
@@ -53,11 +45,16 @@ class RowCaster {
  private:
   bool trace(std::uint32_t patch, PatchRays::Sender sender, bool look_out,
              std::vector<std::uint32_t>& near, Row& row, HitCounter& counter, Band& band) const;
+  // Appends the row of an earlier pose, if it is the same in this one.
+  bool restore(std::uint32_t patch, const PatchRays::Sender& sender, Band& band) const;
+  void keep(std::uint32_t patch, const Row& row, const Band& band) const;
+  // Appends the row, with its entries at the end of the band, and counts its backs.
+  void close(Row row, std::size_t first_part, Band& band) const;
   [[nodiscard]] bool may_be_covered(std::uint32_t patch) const;
   [[nodiscard]] std::vector<std::uint32_t> bodies_near(std::uint32_t patch) const;
   void count_hits(const scenes::RayPacket& packet, const scenes::HitPacket& hits,
-                  std::span<const std::uint32_t> near, Row& row, HitCounter& counter,
-                  Band& band) const;
+                  std::uint32_t number, std::span<const std::uint32_t> near, Row& row,
+                  HitCounter& counter, Band& band) const;
   void follow(const scenes::RayPacket& packet, std::size_t lane, const scenes::Hit& first, Row& row,
               HitCounter& counter, Band& band) const;
   // Adds a ray that hit nothing to the sky light of the last row.
@@ -74,6 +71,7 @@ class RowCaster {
   std::uint64_t seed_;
   std::uint32_t replicate_;
   bool leave_out_covered_, dark_sky_;
+  KeptRows* kept_rows_;  // null: none are kept
   PatchRays rays_;
   HitTargets targets_;
   // Created on demand: most scenes do not need them.

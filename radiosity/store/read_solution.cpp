@@ -8,6 +8,7 @@
 #include "base/files/hdf5_file.h"
 #include "base/input/input_file.h"
 #include "radiosity/bodies/wall_traces.h"
+#include "radiosity/patches/posed_patches.h"
 #include "radiosity/store/solution_fields.h"
 #include "radiosity/store/solution_file.h"
 #include "radiosity/store/solution_key.h"
@@ -164,7 +165,11 @@ Solution read_solution(const std::filesystem::path& path, const SolutionOrigin& 
   visit_layout(store, layout);
   Solution solution;
   try {
-    solution.patches = rebuild_patches(origin.scene, std::move(layout), find_wall_traces);
+    const scenes::Scene& cut = origin.first_pose != nullptr ? *origin.first_pose : origin.scene;
+    solution.patches = rebuild_patches(cut, std::move(layout), find_wall_traces);
+    if (origin.first_pose != nullptr) {
+      solution.patches = posed_patches(std::move(solution.patches), origin.scene);
+    }
   } catch (const std::invalid_argument& problem) {
     file.fail(problem.what());
   }

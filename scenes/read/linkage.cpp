@@ -21,7 +21,8 @@ namespace {
 using base::Blame;
 using base::Error;
 
-constexpr std::string_view joint_keys[] = {"name", "parent", "pivot", "axis", "angle_deg", "epoch"};
+constexpr std::string_view joint_keys[] = {"name",  "parent",  "pivot",  "axis",      "angle_deg",
+                                           "epoch", "follows", "normal", "limits_deg"};
 constexpr std::string_view track_keys[] = {"name",      "parent",     "poses",
                                            "epoch",     "trajectory", "attitude",
                                            "body_axes", "quaternion", "origin"};
@@ -146,11 +147,56 @@ class MotionFile {
   bool by_utc_ = false;
 };
 
+SunFollower read_follower(const Scene& scene, const TableReader& table, const Vec3& axis) {
+  constexpr std::string_view followed[] = {"sun"};
+  constexpr double least_sine = 1e-3;
+  (void)table.choice("follows", followed);
+  for (const char* key : {"angle_deg", "epoch"}) {
+    if (table.has(key)) {
+      table.fail(key, "cannot be combined with \"follows\"", "the Sun gives the angle");
+    }
+  }
+  if (!scene.sun) table.fail("follows", "is \"sun\", and the scene has no [sun]");
+  SunFollower follower;
+  follower.normal = table.required(table.direction("normal"), "normal",
+                                   "normal = [x, y, z], which is turned to the Sun");
+  if (!(glm::length(glm::cross(follower.normal, axis)) > least_sine)) {
+    table.fail("normal", "is along the axis", "it turns about the axis to face the Sun");
+  }
+  if (const TomlEntry* limits = table.find("limits_deg")) {
+    const auto* items = std::get_if<TomlArray>(&limits->node.value);
+    std::vector<double> pair;
+    for (std::size_t k = 0; items != nullptr && k < items->size(); ++k) {
+      const TomlNode& item = (*items)[k];
+      if (const auto* real = std::get_if<double>(&item.value)) pair.push_back(*real);
+      if (const auto* whole = std::get_if<std::int64_t>(&item.value)) {
+        pair.push_back(static_cast<double>(*whole));
+      }
+    }
+    const bool good = pair.size() == 2 && pair[0] >= -360.0 && pair[0] <= pair[1] &&
+                      pair[1] <= 360.0 && pair[1] - pair[0] <= 360.0;
+    if (!good) {
+      table.fail("limits_deg", "is " + describe(limits->node),
+                 "allowed are two angles from -360 to 360, rising, at most 360 apart");
+    }
+    follower.lowest_deg = pair[0];
+    follower.highest_deg = pair[1];
+  }
+  return follower;
+}
+
 Joint read_joint(Scene& scene, const TableReader& table, double unit_m, std::string name) {
   Joint joint;
   joint.name = std::move(name);
   joint.pivot_m = table.required(table.position("pivot", unit_m), "pivot", "pivot = [x, y, z]");
   joint.axis = table.required(table.direction("axis"), "axis", "axis = [x, y, z]");
+  if (table.has("follows")) {
+    joint.motion = read_follower(scene, table, joint.axis);
+    return joint;
+  }
+  for (const char* key : {"normal", "limits_deg"}) {
+    if (table.has(key)) table.fail(key, "belongs to follows = \"sun\"");
+  }
   const TomlEntry* angle = table.find("angle_deg");
   if (angle == nullptr || !std::holds_alternative<std::string>(angle->node.value)) {
     joint.motion = table.number("angle_deg", angles_deg).value_or(0.0);

@@ -16,8 +16,8 @@ using base::Blame;
 using base::Error;
 
 constexpr std::string_view fixed_keys[] = {"format", "name", "unit"};
-constexpr std::string_view plain_tables[] = {"sun",     "earth",   "orbit",   "time",
-                                             "ambient", "monitor", "quality", "moon"};
+constexpr std::string_view plain_tables[] = {"sun",     "earth",   "orbit", "time",   "ambient",
+                                             "monitor", "quality", "moon",  "airglow"};
 constexpr std::string_view named_tables[] = {"material", "object",       "light", "area", "camera",
                                              "cctv",     "range_sensor", "joint", "track"};
 

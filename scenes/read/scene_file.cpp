@@ -10,6 +10,7 @@
 #include "scenes/read/include.h"
 #include "scenes/read/override.h"
 #include "scenes/read/scene_parts.h"
+#include "scenes/sky/airglow.h"
 #include "scenes/sky/moon.h"
 #include "scenes/surface_texture.h"
 #include "scenes/text/toml_file.h"
@@ -21,9 +22,9 @@ namespace {
 constexpr std::string_view root_keys[] = {
     "format",  "name",         "unit",    "material", "object",  "light",  "area",
     "sun",     "earth",        "orbit",   "time",     "ambient", "camera", "cctv",
-    "monitor", "range_sensor", "quality", "joint",    "moon",    "track"};
+    "monitor", "range_sensor", "quality", "joint",    "moon",    "track",  "airglow"};
 constexpr std::string_view camera_file_keys[] = {"cctv", "monitor"};
-constexpr std::string_view ambient_keys[] = {"radiance"};
+constexpr std::string_view ambient_keys[] = {"radiance"}, airglow_keys[] = {"radiance"};
 constexpr std::string_view units[] = {"m", "cm", "mm", "ft", "in"};
 constexpr double metres_per_unit[] = {1.0, 0.01, 0.001, 0.3048, 0.0254};
 static_assert(std::size(units) == std::size(metres_per_unit));
@@ -147,6 +148,11 @@ Scene scene_of(TomlNode tree, const std::filesystem::path& path,
     return scene.areas.emplace_back(read_area(node, unit_m)).name;
   });
   if (scene.moon) add_moon_lamp(scene, plain_table(root, "moon")->where);
+  if (const TomlNode* node = plain_table(root, "airglow")) {
+    const TableReader table(*node, "[airglow]", airglow_keys);
+    add_airglow_lamps(scene, table.colour("radiance").value_or(Rgb(usual_airglow_cd_m2)),
+                      node->where);
+  }
   const auto tables = luminaires.files();
   scene.files.insert(scene.files.end(), tables.begin(), tables.end());
   for (std::string& warning : luminaires.warnings()) scene.warnings.push_back(std::move(warning));

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/files/exr_file.h"
 #include "base/input/input_file.h"
+#include "base/pixels/pixels.h"
 #include "scenes/text/csv_lines.h"
 #include "scenes/text/message_text.h"
 #include "scenes/text/text_lines.h"
@@ -17,7 +19,7 @@ namespace {
 using base::Blame;
 using base::Error;
 
-constexpr std::size_t max_grid_bytes = std::size_t{16} << 20;
+constexpr std::size_t max_grid_bytes = std::size_t{16} << 20, max_map_bytes = std::size_t{1} << 28;
 
 double number(const CsvField& field, double low, double high) {
   const auto found = number_in(field.text);
@@ -75,8 +77,60 @@ double AlbedoGrid::at(const Vec3& up) const {
   return low + lat.share * (row(lat.high) - low);
 }
 
+namespace {
+
+// rows: from the north pole, columns eastward from -180 deg.
+AlbedoGrid grid_of_map(const std::filesystem::path& path, int columns, int rows,
+                       const std::vector<double>& values) {
+  std::vector<double> latitudes, longitudes, upward;
+  for (int x = 0; x < columns; ++x) longitudes.push_back(-180.0 + (x + 0.5) * 360.0 / columns);
+  for (int y = rows; y-- > 0;) {
+    latitudes.push_back(90.0 - (y + 0.5) * 180.0 / rows);
+    for (int x = 0; x < columns; ++x) {
+      const double value = values[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
+                                  static_cast<std::size_t>(x)];
+      if (!(value >= 0.0 && value <= 1.0)) {
+        throw Error(Blame::Input, path.string(),
+                    fmt::format("the albedo {:g} at column {}, row {}", value, x, y),
+                    "allowed are numbers from 0 to 1");
+      }
+      upward.push_back(value);
+    }
+  }
+  return {std::move(latitudes), std::move(longitudes), std::move(upward)};
+}
+
+AlbedoGrid read_exr_map(const std::filesystem::path& path, const base::Location& asked_at) {
+  base::check_input_file(path, asked_at);
+  const base::Image image = base::read_exr(path).image;
+  const base::Channel* grey = image.channels.size() == 1 ? &image.channels[0] : image.find("Y");
+  if (const base::Channel* red = image.find("R"); grey == nullptr && red != nullptr) {
+    const base::Channel *green = image.find("G"), *blue = image.find("B");
+    const bool same = green != nullptr && blue != nullptr && green->values == red->values &&
+                      blue->values == red->values;
+    if (same) grey = red;
+  }
+  if (grey == nullptr) {
+    std::vector<std::string> names;
+    for (const base::Channel& channel : image.channels) names.push_back(channel.name);
+    throw Error(Blame::Input, path.string(), "has the channels " + listed(names),
+                "allowed is one channel, Y, or R, G, B that are equal");
+  }
+  return grid_of_map(path, image.width, image.height,
+                     std::vector<double>(grey->values.begin(), grey->values.end()));
+}
+
+}  // namespace
+
 AlbedoGrid read_albedo_grid(const std::filesystem::path& path, const base::Location& asked_at) {
-  const std::string text = base::read_input_file(path, max_grid_bytes, asked_at);
+  const std::string ending = lower_case(path.extension().string());
+  if (ending == ".exr") return read_exr_map(path, asked_at);
+  const std::string text =
+      base::read_input_file(path, ending == ".png" ? max_map_bytes : max_grid_bytes, asked_at);
+  if (ending == ".png") {
+    const base::GreyPixels map = base::read_grey_png(text, path.string());
+    return grid_of_map(path, map.width, map.height, map.values);
+  }
   CsvLines lines(text, path.string());
   constexpr const char* wanted =
       "a header names latitude_deg and then longitudes, or latitude_deg, albedo";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Earth's albedo by latitude and longitude, from a CSV file.
+// The Earth's albedo by latitude and longitude, from a table or a map.
 #pragma once
 
 #include <filesystem>
@@ -31,7 +31,10 @@ class AlbedoGrid {
   double largest_;
 };
 
-// The header names "latitude_deg" and then the longitudes, east, in degrees; or "latitude_deg,
+// A map (*.png, *.exr) covers the whole Earth: rows from the north pole, columns eastward from -180
+// deg, values at the middles of pixels: of a grey PNG of 8 or 16 bits over the largest one, linear;
+// of an EXR its only channel, Y, or equal R, G, B. Else a CSV file, in which
+// the header names "latitude_deg" and then the longitudes, east, in degrees; or "latitude_deg,
 // albedo" for one by latitude alone. Rows rise in latitude. Throws base::Error (Input) at file,
 // line and column for anything else, and for albedos that are not from 0 to 1.
 [[nodiscard]] AlbedoGrid read_albedo_grid(const std::filesystem::path& path,

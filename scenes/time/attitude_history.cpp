@@ -20,6 +20,8 @@ using base::Error;
 constexpr double length_slack = 0.01;
 constexpr double end_slack_s = 1.0;  // tolerance of STOP_TIME against the last row
 constexpr double jump_deg = 10.0, jump_ratio = 10.0;
+constexpr double single_ratio = 5.0;  // a row off its two neighbours, which are two steps apart
+constexpr double same_deg = 0.01;     // rows of one attitude, which is held over any gap
 constexpr const char* types = "allowed are QUATERNION, EULER_ANGLE and SPIN, with rates or without";
 constexpr const char* say_scalar =
     "Write quaternion = \"scalar-first\" or \"scalar-last\" beside attitude";
@@ -46,6 +48,11 @@ glm::dquat spin_turn(const glm::dvec4& spin) {
 bool is_body(const std::string& name) {
   const std::string lower = lower_case(name);
   return lower.starts_with("sc_body") || lower.starts_with("spacecraft_body");
+}
+
+double turn_between_deg(const AttitudeSegment& segment, std::size_t a, std::size_t b) {
+  const double cosine = std::abs(glm::dot(segment.turns[a], segment.turns[b]));
+  return 2.0 * base::degrees(std::acos(std::min(cosine, 1.0)));
 }
 
 enum class Kind { Quaternion, Euler, Spin };
@@ -268,6 +275,7 @@ class AemReader {
       const auto& n = row.numbers;
       const glm::dquat turn = turn_of(n, rows, line);
       segment.at.push_back(row.at);
+      segment.lines.push_back(line.where.line);
       segment.turns.push_back(rows.body_is_a ? glm::conjugate(turn) : turn);
       if (rows.kind == Kind::Spin) segment.spin.emplace_back(n[0], n[1], n[2], n[3]);
     }
@@ -299,15 +307,14 @@ class AemReader {
   void name_jumps(std::vector<std::string>& warnings) const {
     for (const AttitudeSegment& segment : made_.segments) {
       if (!segment.spin.empty()) continue;
-      const auto turn_deg = [&](std::size_t k) {
-        const double cosine = std::abs(glm::dot(segment.turns[k], segment.turns[k + 1]));
-        return 2.0 * base::degrees(std::acos(std::min(cosine, 1.0)));
-      };
+      const auto turn_deg = [&](std::size_t k) { return turn_between_deg(segment, k, k + 1); };
       for (std::size_t k = 0; k + 1 < segment.turns.size(); ++k) {
         const double turn = turn_deg(k);
         const double before = k > 0 ? turn_deg(k - 1) : 0.0;
         const double after = k + 2 < segment.turns.size() ? turn_deg(k + 1) : 0.0;
-        if (turn < jump_deg || turn < jump_ratio * std::max(before, after)) continue;
+        const bool single = k + 2 < segment.turns.size() && turn >= jump_ratio * before &&
+                            turn >= single_ratio * turn_between_deg(segment, k, k + 2);
+        if (turn < jump_deg || !(single || turn >= jump_ratio * std::max(before, after))) continue;
         warnings.push_back(fmt::format(
             "{}: the attitude jumps by {:.4g} deg from {} to {}; is the scalar of each quaternion "
             "where the file says?",
@@ -323,6 +330,14 @@ class AemReader {
   std::size_t next_ = 0;
   std::vector<std::string> unknown_;
 };
+
+// Whether the body, or the axis of its spin, has one attitude from row to row.
+bool is_held(const AttitudeSegment& segment, std::size_t before) {
+  if (segment.spin.empty()) return turn_between_deg(segment, before, before + 1) < same_deg;
+  const glm::dvec4 &from = segment.spin[before], &to = segment.spin[before + 1];
+  return std::abs(std::remainder(to[0] - from[0], 360.0)) < same_deg &&
+         std::abs(to[1] - from[1]) < same_deg;
+}
 
 glm::dquat between(const AttitudeSegment& segment, std::size_t before, Instant t) {
   const double span_s = segment.at[before + 1] - segment.at[before];
@@ -343,7 +358,7 @@ glm::dquat between(const AttitudeSegment& segment, std::size_t before, Instant t
 
 }  // namespace
 
-glm::dquat AttitudeHistory::at(Instant t) const {
+glm::dquat AttitudeHistory::at(Instant t, double longest_gap_s) const {
   const auto found =
       std::find_if(segments.rbegin(), segments.rend(), [&](const AttitudeSegment& segment) {
         return t - segment.first_useful > -1e-6 && t - segment.last_useful < 1e-6;
@@ -360,7 +375,13 @@ glm::dquat AttitudeHistory::at(Instant t) const {
   const auto after = static_cast<std::size_t>(upper - found->at.begin());
   glm::dquat turn = found->turns.front();
   if (found->at.size() > 1) {
-    turn = between(*found, std::min(after > 0 ? after - 1 : 0, found->at.size() - 2), t);
+    const std::size_t before = std::min(after > 0 ? after - 1 : 0, found->at.size() - 2);
+    if (t > found->at[before] && t < found->at[before + 1] &&
+        found->at[before + 1] - found->at[before] > longest_gap_s && !is_held(*found, before)) {
+      fail_gap({file, found->lines[before + 1], 0}, found->at[before], found->at[before + 1],
+               "Give rows more often, begin a new segment, or give both rows the same attitude");
+    }
+    turn = between(*found, before, t);
   }
   return glm::normalize(glm::quat_cast(to_gcrs(found->frame, t, clock)) * turn);
 }

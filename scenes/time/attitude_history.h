@@ -28,6 +28,7 @@ struct AttitudeSegment {
   Instant first_useful, last_useful;
   std::vector<Instant> at;        // ascending
   std::vector<glm::dquat> turns;  // v_frame = q v_body q*
+  std::vector<int> lines;         // of the rows
   // For spin, deg and deg/s: right ascension, declination, spin angle, rate. Else empty.
   std::vector<glm::dvec4> spin;
   bool body_is_a = false;  // } for spin: direction of its angles
@@ -40,8 +41,9 @@ struct AttitudeHistory {
   std::vector<AttitudeSegment> segments;
 
   // v_GCRS = q v_body q*. Between rows the rotation is uniform, by the shorter way (slerp, Shoemake
-  // 1985); spin continues at its rate. Throws base::Error (Input) outside the segments.
-  [[nodiscard]] glm::dquat at(Instant t) const;
+  // 1985); spin continues at its rate. Throws base::Error (Input) outside the segments, and between
+  // rows of different attitude that are farther apart than `longest_gap_s` (Trajectory::longest_gap_s).
+  [[nodiscard]] glm::dquat at(Instant t, double longest_gap_s) const;
 };
 
 // scalar: position of a quaternion's scalar, if the scene specifies it. AEM version 1 specifies it
@@ -50,7 +52,7 @@ struct AttitudeHistory {
 // differs from the file's own; unless exactly one frame is the spacecraft's body; for times that do
 // not rise, lengths more than 1 % from 1, and rows that end before STOP_TIME. warnings: gets a line
 // for the first jump, a rotation between rows that exceeds 10 deg and ten times the rotations
-// before and after.
+// before and after, and for a single row off by that much.
 [[nodiscard]] AttitudeHistory read_attitude_history(const std::filesystem::path& path,
                                                     EarthClock clock,
                                                     std::optional<ScalarPlace> scalar,

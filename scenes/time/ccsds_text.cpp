@@ -179,6 +179,15 @@ CcsdsMeta read_meta_of(const CcsdsMessage& message, std::size_t& next,
   fail_cut_off(begin, "META_STOP");
 }
 
+void fail_gap(const base::Location& second_row, Instant first, Instant second,
+              std::string_view remedy) {
+  throw Error(Blame::Input, second_row,
+              fmt::format("the row here ends a gap of {:.6g} s from {} to {}", second - first,
+                          utc_text(first), utc_text(second)),
+              "between two rows the spacecraft may go 36 deg around the Earth",
+              std::string(remedy));
+}
+
 void fail_cut_off(const CcsdsLine& begin, std::string_view wanted) {
   throw Error(Blame::Input, begin.where,
               fmt::format("{} that begins here has no {}", begin.key, wanted),

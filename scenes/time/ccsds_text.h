@@ -28,6 +28,13 @@ struct CcsdsMessage {
   std::vector<CcsdsLine> lines;  // in file order, without comments
 };
 
+// Largest angle around the Earth between two rows between which a message is interpolated.
+inline constexpr double largest_gap_rad = base::pi / 5.0;
+
+// Error (Input) for a moment between two rows that are farther apart.
+[[noreturn]] void fail_gap(const base::Location& second_row, Instant first, Instant second,
+                           std::string_view remedy);
+
 // kind: "OEM" or "AEM". An XML file gives the same lines as the message in KVN; XML is an error for
 // an AEM. Throws base::Error (Input) with file and line for other text, another message or version,
 // and XML with unclosed elements.

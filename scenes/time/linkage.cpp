@@ -57,8 +57,9 @@ Pose pose_at(const Visitor& visitor, const Mission& mission, Instant t) {
   const Vec3 away = visitor.trajectory.at(t).position_m - mission.trajectory->at(t).position_m;
   Pose pose{glm::dmat3(1.0), visitor.origin_m + to_scene * away};
   if (visitor.attitude) {
-    pose.rotation =
-        to_scene * glm::mat3_cast(visitor.attitude->at(t)) * glm::transpose(visitor.body_axes);
+    pose.rotation = to_scene *
+                    glm::mat3_cast(visitor.attitude->at(t, visitor.trajectory.longest_gap_s(t))) *
+                    glm::transpose(visitor.body_axes);
   }
   return pose;
 }
@@ -74,35 +75,68 @@ bool Linkage::moves() const {
   return std::any_of(joints.begin(), joints.end(), [](const Joint& j) { return j.moves(); });
 }
 
-std::vector<JointState> Linkage::at(const Mission* mission, Instant t) const {
-  std::vector<JointState> states(joints.size());
-  for (std::size_t k = 0; k < joints.size(); ++k) {
+double SunFollower::angle_deg(const Vec3& axis, const Vec3& sun) const {
+  const Vec3 side = glm::cross(axis, normal);
+  const Vec3 across = glm::cross(side, axis);  // the normal's part across the axis, unnormalised
+  const double x = glm::dot(sun, across), y = glm::dot(sun, side);
+  constexpr double rounding = 1e-12;
+  const double best =
+      std::hypot(x, y) > rounding * glm::length(side) ? base::degrees(std::atan2(y, x)) : 0.0;
+  // The cosine falls with the angle's distance from the best one, to the nearer limit.
+  double found = lowest_deg;
+  double off = std::numeric_limits<double>::infinity();
+  for (int turn = -2; turn <= 2; ++turn) {
+    const double angle = std::clamp(best + 360.0 * turn, lowest_deg, highest_deg);
+    const double distance = std::abs(std::remainder(angle - best, 360.0));
+    // Of equal angles the one nearest to 0.
+    const bool nearer = distance < off - 1e-9;
+    if (!nearer && !(distance < off + 1e-9 && std::abs(angle) < std::abs(found))) continue;
+    found = angle;
+    off = std::min(off, distance);
+  }
+  return found;
+}
+
+std::vector<JointState> Linkage::at(const Mission* mission, Instant t, const Vec3& sun) const {
+  std::vector<JointState> states(joints.size()), found(joints.size());
+  std::vector<char> done(joints.size(), 0);
+  // A parent may come after its child.
+  const auto place = [&](const auto& self, std::size_t k) -> void {
+    if (done[k] != 0) return;
+    done[k] = 1;
     const Joint& joint = joints[k];
     JointState& state = states[k];
+    Pose parent;
+    if (joint.parent) {
+      self(self, *joint.parent);
+      parent = found[*joint.parent].pose;
+    }
     if (const auto* poses = std::get_if<PoseTable>(&joint.motion)) {
       state.pose = pose_at(*poses, t);
     } else if (const auto* visitor = std::get_if<Visitor>(&joint.motion)) {
       state.pose = pose_at(*visitor, *mission, t);
     } else {
-      const auto* angles = std::get_if<AngleTable>(&joint.motion);
-      state.angle_deg = angles != nullptr ? angle_at(*angles, t) : std::get<double>(joint.motion);
+      if (const auto* follower = std::get_if<SunFollower>(&joint.motion)) {
+        state.angle_deg = follower->angle_deg(joint.axis, glm::transpose(parent.rotation) * sun);
+      } else {
+        const auto* angles = std::get_if<AngleTable>(&joint.motion);
+        state.angle_deg = angles != nullptr ? angle_at(*angles, t) : std::get<double>(joint.motion);
+      }
       // Exactly nothing where nothing turns.
       if (*state.angle_deg != 0.0)
         state.pose = turn_about(joint.pivot_m, joint.axis, *state.angle_deg);
     }
-  }
-  std::vector<JointState> found = states;
-  for (std::size_t k = 0; k < joints.size(); ++k) {
-    for (auto parent = joints[k].parent; parent; parent = joints[*parent].parent) {
-      found[k].pose = states[*parent].pose * found[k].pose;
-    }
-  }
+    found[k] = state;
+    if (joint.parent) found[k].pose = parent * state.pose;
+  };
+  for (std::size_t k = 0; k < joints.size(); ++k) place(place, k);
   return found;
 }
 
 std::vector<JointState> joints_now(const Scene& scene) {
   const Mission* const mission = mission_of(scene);
-  return scene.linkage->at(mission, mission != nullptr ? mission->moment : Instant());
+  return scene.linkage->at(mission, mission != nullptr ? mission->moment : Instant(),
+                           scene.sun ? scene.sun->direction : Vec3(0.0, 0.0, 1.0));
 }
 
 std::string pose_text(const Scene& scene) {

@@ -44,7 +44,8 @@ class SceneAxes {
   SceneAxes(const Mission& mission, const LocalFrame& local, const Vec3& sun, Instant t)
       : local_(local) {
     if (mission.history) {
-      to_body_ = mission.body_axes * glm::mat3_cast(glm::conjugate(mission.history->at(t)));
+      to_body_ = mission.body_axes * glm::mat3_cast(glm::conjugate(mission.history->at(
+                                         t, mission.trajectory->longest_gap_s(t))));
     } else if (mission.attitude == inertial_attitude) {
       const State kept = mission.trajectory->at(mission.time.start);
       const LocalFrame frame(kept);

@@ -16,7 +16,6 @@ namespace {
 using base::Blame;
 using base::Error;
 
-constexpr double largest_gap_rad = base::pi / 5.0;
 constexpr double span_slack_s = 1.0;  // tolerance of STOP_TIME against the last state
 constexpr double farthest_m = 1e9;
 constexpr double equator_m = 6378137.0, pole_m = 6356752.3;
@@ -266,6 +265,7 @@ class OemReader {
                   "an orbit goes around the Earth");
     }
     segment.at.push_back(row.at);
+    segment.lines.push_back(line.where.line);
     segment.states.push_back(state);
   }
 
@@ -322,7 +322,14 @@ class OemReader {
   std::vector<std::string> unknown_;
 };
 
+double gap_of(const State& state) {
+  return largest_gap_rad * glm::dot(state.position_m, state.position_m) /
+         glm::length(glm::cross(state.position_m, state.velocity_m_s));
+}
+
 }  // namespace
+
+double Trajectory::longest_gap_s(Instant t) const { return gap_of(at(t)); }
 
 State Trajectory::at(Instant t) const {
   const auto found =
@@ -346,15 +353,9 @@ State Trajectory::at(Instant t) const {
       std::min(after > 0 ? after - 1 : 0, found->at.size() > 1 ? found->at.size() - 2 : 0);
   const State& start = found->states[before];
   if (found->at.size() > 1 && t > found->at[before] && t < found->at[before + 1]) {
-    const double rate = glm::length(glm::cross(start.position_m, start.velocity_m_s)) /
-                        glm::dot(start.position_m, start.position_m);
-    const double step_s = found->at[before + 1] - found->at[before];
-    if (rate * step_s > largest_gap_rad) {
-      throw Error(Blame::Input, file,
-                  fmt::format("has a gap of {:.6g} s from {} to {}", step_s,
-                              utc_text(found->at[before]), utc_text(found->at[before + 1])),
-                  "between two states the spacecraft may go 36 deg around the Earth",
-                  "Give states more often, or begin a new segment");
+    if (found->at[before + 1] - found->at[before] > gap_of(start)) {
+      fail_gap({file, found->lines[before + 1], 0}, found->at[before], found->at[before + 1],
+               "Give states more often, or begin a new segment");
     }
   }
   const State state = found->at.size() == 1 ? start : interpolate(*found, before, t);

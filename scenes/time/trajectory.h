@@ -23,6 +23,7 @@ struct TrajectorySegment {
   std::optional<Instant> frame_epoch;  // epoch of TEME and TOD; none: each state's time
   std::vector<Instant> at;             // ascending
   std::vector<State> states;           // in the file's frame
+  std::vector<int> lines;              // of the states
   int line = 0;                        // of the metadata
 };
 
@@ -38,6 +39,8 @@ struct Trajectory {
   // spacecraft moves more than 36 deg around the Earth between two states: there a cubic of two
   // states has an error of 3 km in low orbit (R theta^4 / 384).
   [[nodiscard]] State at(Instant t) const;
+  // Time in which the spacecraft moves 36 deg around the Earth from its state at t.
+  [[nodiscard]] double longest_gap_s(Instant t) const;
   [[nodiscard]] Instant first() const { return segments.front().first_useful; }
   [[nodiscard]] Instant last() const { return segments.back().last_useful; }
 };

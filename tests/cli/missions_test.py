@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Missions for users: scripts that write trajectories, inspect, a study along time, and errors."""
 import csv
+import json
 import math
 import subprocess
 import sys
@@ -110,6 +111,31 @@ class Missions(program.Case):
         self.assertEqual(exr.read(self.folder / "a.exr")[3], exr.read(self.folder / "b.exr")[3])
         self.says(self.refused("inspect", "bay.toml", "--set", "time.moment=2026-03-01T12:20:00"),
                   "door.csv:4", "ends at 2026-03-01T12:12:00Z", "allowed are moments")
+
+    def test_a_camera_inside_a_body_at_one_pose_is_skipped_there(self):
+        """The box swings over the camera D from 12:11 on; A looks at it from outside all the time."""
+        camera = '[[camera]]\nname = "D"\nposition = [0, 1, 0.3]\nlook_at = [0, 0, 0.3]\nup = [0, 0, 1]\nfov_deg = 50\nresolution = [12, 12]\n'
+        self.write("bay.toml", MISSION.replace('name = "box"\n', 'name = "box"\njoint = "slide"\n') + camera +
+                   '[[track]]\nname = "slide"\nposes = "slide.csv"\n')
+        self.write("slide.csv", "utc, x, y, z\n2026-03-01T12:00:00, 0, 0, 0\n2026-03-01T12:10:00, 0, 0, 0\n2026-03-01T12:11:00, 0, 1, 0\n")
+        study = ('format = 1\nscene = "bay.toml"\ncameras = ["B", "D"]\nsize = "12x12"\n[time]\nstart = "2026-03-01T12:10:00"\n'
+                 'stop = "2026-03-01T12:11:00"\nstep = 60\n[[picture]]\nname = "late"\ncamera = "D"\ntime = "2026-03-01T12:11:00"\n')
+        for cameras in ('["B", "D"]', '["D"]'):
+            self.write("study.toml", study.replace('["B", "D"]', cameras))
+            run = self.run_program("study", "run", "study.toml", "-o", "out", "--json")
+            self.assertEqual(run.returncode, 3, run.stderr)
+            self.says(run.stderr, "skipped at 2026-03-01T12:11:00Z: ", 'camera "D"', '"box"',
+                      'skipped: [[picture]] "late": camera "D" is inside a body at 2026-03-01T12:11:00Z',
+                      "cameras inside a body were skipped: D at 2026-03-01T12:11:00Z")
+            found = json.loads(run.stdout)
+            self.says(json.dumps(found), 'is inside a body at 2026-03-01T12:11:00Z and was skipped')
+            names = [camera["name"] for camera in found["cameras"]]
+            with open(self.folder / "out" / "results.csv", encoding="utf-8") as file:
+                seen = {(row["camera"], row["utc"][11:16]) for row in csv.DictReader(file)}
+            self.assertEqual(seen, {(c, t) for c in names for t in ("12:10", "12:11")} - {("D", "12:11")})
+        # At every pose: an error, as of render.
+        self.write("study.toml", study.replace('["B", "D"]', '["D"]').replace("12:10:00", "12:10:59").replace("step = 60", "step = 0.5"))
+        self.says(self.refused("study", "run", "study.toml", "-o", "no"), 'camera "D"', '"box"')
 
     def test_what_cannot_be_is_refused(self):
         self.says(self.refused("study", "orbit", "bay.toml", "--positions", "4", "-o", "no"), "trajectory", "[time]")

@@ -268,5 +268,82 @@ TEST_F(MovingScene, BadLinkagesAreRefused) {
   EXPECT_TRUE(holds(mirrored, {"mirror image"})) << mirrored;
 }
 
+// Of all angles within the limits, in steps of 0.1 deg, none gives the normal a larger cosine with
+// the Sun; a joint on a turned parent follows in the parent's axes.
+TEST(Linkage, ArraysFollowTheSunToTheLargestCosineThatAxisAndLimitsAllow) {
+  const SceneFolder folder;
+  const struct {
+    Vec3 sun;
+    double low_deg, high_deg;
+  } cases[] = {{{0.3, -0.8, 0.2}, -180.0, 180.0}, {{-0.5, 0.1, -0.9}, -180.0, 180.0},
+               {{-0.5, 0.1, -0.9}, -60.0, 75.0},  {{0.1, 0.9, -0.2}, 20.0, 330.0},
+               {{0.2, 0.3, -0.9}, -30.0, -10.0},  {{0.7, -0.1, 0.1}, 0.0, 0.0}};
+  const Vec3 axis = glm::normalize(Vec3(0.2, 1.0, -0.1)), normal = glm::normalize(Vec3(1, 0.2, 2));
+  const glm::dmat3 parent(about({0, 0, 0}, {0, 0, 1}, 50.0));
+  for (const auto& one : cases) {
+    const Scene scene = folder.read(fmt::format(
+        "format = 1\n[sun]\ndirection = [{}, {}, {}]\n{}{}[[joint]]\nname = \"array\"\n"
+        "parent = \"mast\"\npivot = [1, 2, 3]\naxis = [0.2, 1.0, -0.1]\nfollows = \"sun\"\n"
+        "normal = [1, 0.2, 2]\nlimits_deg = [{}, {}]\n",
+        one.sun.x, one.sun.y, one.sun.z, material, joint_of("mast", "angle_deg = 50\n"),
+        one.low_deg, one.high_deg));
+    const JointState found = joints_now(scene)[1];
+    const Vec3 sun = glm::normalize(one.sun);
+    EXPECT_GE(*found.angle_deg, one.low_deg);
+    EXPECT_LE(*found.angle_deg, one.high_deg);
+    const double cosine = glm::dot(found.pose.rotation * normal, sun);
+    double largest = -1.0;
+    const int steps = static_cast<int>(10.0 * (one.high_deg - one.low_deg));
+    for (int k = 0; k <= steps; ++k) {
+      const glm::dmat3 turn(about({0, 0, 0}, axis, one.low_deg + 0.1 * k));
+      largest = std::max(largest, glm::dot(parent * (turn * normal), sun));
+    }
+    EXPECT_GE(cosine, largest - 1e-12);
+    EXPECT_LE(cosine, largest + 2e-6);  // half a step: 1 - cos(0.05 deg) = 4e-7
+    EXPECT_LT(off(found.pose.point(Vec3(parent * Vec3(0.0))), found.pose.offset_m), 1e-12);
+  }
+}
+
+// Along a trajectory: at every moment the array of a spacecraft that keeps the bay to the Earth.
+TEST(Linkage, ArraysFollowTheSunAlongATrajectory) {
+  const SceneFolder folder;
+  folder.put("t.oem", test::oem_of(test::Ellipse(), linkage_epoch, 60.0, 95));
+  const std::string text =
+      std::string("format = 1\n[orbit]\ntrajectory = \"t.oem\"\n") + material +
+      "[[joint]]\nname = \"array\"\npivot = [0, 0, 0]\naxis = [0, 1, 0]\nfollows = \"sun\"\n"
+      "normal = [0, 0, 1]\n";
+  for (int minute = 0; minute < 94; minute += 13) {
+    const std::string at = utc_text(linkage_epoch + 60.0 * minute);
+    const Scene scene = folder.read(text + "[time]\nstart = \"" + at + "\"\n");
+    const Vec3 sun = scene.sun->direction;
+    const double cosine = glm::dot(joints_now(scene)[0].pose.rotation * Vec3(0, 0, 1), sun);
+    EXPECT_NEAR(cosine, std::hypot(sun.x, sun.z), 1e-12) << at;  // all but the part along the axis
+    EXPECT_TRUE(scene.linkage->moves());
+  }
+}
+
+TEST(Linkage, BadFollowersAreRefused) {
+  const SceneFolder folder;
+  const std::string follows = "follows = \"sun\"\n", sun = "[sun]\ndirection = [0, 0, 1]\n";
+  const struct {
+    std::string sky, joint;
+    std::vector<std::string> says;
+  } bad[] = {
+      {"", follows + "normal = [1, 0, 0]\n", {"\"follows\"", "no [sun]"}},
+      {sun, follows, {"normal"}},
+      {sun, follows + "normal = [0, 0, 2]\n", {"\"normal\"", "along the axis"}},
+      {sun, follows + "normal = [1, 0, 0]\nangle_deg = 3\n", {"\"angle_deg\"", "follows"}},
+      {sun, follows + "normal = [1, 0, 0]\nlimits_deg = [10, -10]\n", {"\"limits_deg\"", "rising"}},
+      {sun, follows + "normal = [1, 0, 0]\nlimits_deg = 10\n", {"\"limits_deg\"", "two angles"}},
+      {sun, "normal = [1, 0, 0]\n", {"\"normal\"", "follows = \"sun\""}},
+      {sun, "follows = \"moon\"\nnormal = [1, 0, 0]\n", {"\"follows\"", "sun"}},
+  };
+  for (const auto& one : bad) {
+    const std::string said =
+        folder.refusal("format = 1\n" + one.sky + material + joint_of("j", one.joint));
+    EXPECT_TRUE(holds(said, one.says)) << said;
+  }
+}
+
 }  // namespace
 }  // namespace earthshine::scenes

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -13,6 +14,7 @@ namespace {
 
 using test::holds;
 
+constexpr double any_gap = 1e9;
 const Instant noon = *read_instant("2026-03-01T12:00:00", TimeSystem::Utc);
 
 std::string aem(const std::string& meta, const std::string& rows, const char* version = "1.0",
@@ -34,7 +36,7 @@ class AttitudeMessage : public ::testing::Test {
   }
   std::string refusal(const std::string& text, std::optional<ScalarPlace> scalar = std::nullopt) {
     try {
-      (void)read(text, scalar).at(noon);
+      (void)read(text, scalar).at(noon, any_gap);
     } catch (const base::Error& error) {
       return error.what();
     }
@@ -97,7 +99,7 @@ TEST_F(AttitudeMessage, QuaternionsOfThe24RightAngleTurns) {
         aem(type, row(false, 1.0), "2.0"),
         aem(type, row(false, -1.0), "2.0", "SC_BODY_1", "GCRF")};
     for (const std::string& way : ways) {
-      const glm::dquat q = read(way).at(noon);
+      const glm::dquat q = read(way).at(noon, any_gap);
       EXPECT_LT(glm::length(q * X - turn.x), 1e-12) << turn.angle_deg << way;
       EXPECT_LT(glm::length(q * Y - turn.y), 1e-12) << turn.angle_deg << way;
       EXPECT_LT(glm::length(q * Z - glm::cross(turn.x, turn.y)), 1e-12) << turn.angle_deg << way;
@@ -130,7 +132,7 @@ TEST_F(AttitudeMessage, EulerAnglesAreMatricesMultiplied) {
         read(aem("ATTITUDE_TYPE = EULER_ANGLE\nATTITUDE_DIR = A2B\nEULER_ROT_SEQ = " + sequence +
                      "\n",
                  "2026-03-01T12:00:00 30 -50 70\n"))
-            .at(noon);
+            .at(noon, any_gap);
     for (const Vec3& v : {X, Y, Z}) {
       EXPECT_LT(glm::length(glm::conjugate(q) * v - wanted * v), 1e-12) << sequence;
     }
@@ -144,7 +146,7 @@ TEST_F(AttitudeMessage, SpinGoesOnAtItsRateBetweenRows) {
   const AttitudeHistory history = read(text);
   const double ra = base::radians(120.0), dec = base::radians(35.0);
   const Vec3 axis(std::cos(dec) * std::cos(ra), std::cos(dec) * std::sin(ra), std::sin(dec));
-  const glm::dquat begin = history.at(noon), later = history.at(noon + 10.0);
+  const glm::dquat begin = history.at(noon, any_gap), later = history.at(noon + 10.0, any_gap);
   EXPECT_LT(glm::length(begin * Z - axis), 1e-12);
   EXPECT_LT(glm::length(later * Z - axis), 1e-12);
   const Vec3 x = begin * X, turned = later * X;
@@ -165,15 +167,15 @@ TEST_F(AttitudeMessage, WhereTheScalarIsIsNeverGuessed) {
                      "1.000)",
                      "scalar last: z at (0.000, 0.000, -1.000)", "quaternion = \"scalar-first\""}))
       << refusal(silent);
-  EXPECT_LT(glm::length(read(silent, ScalarPlace::First).at(noon) * Z - Z), 1e-12);
-  EXPECT_LT(glm::length(read(silent, ScalarPlace::Last).at(noon) * Z + Z), 1e-12);
+  EXPECT_LT(glm::length(read(silent, ScalarPlace::First).at(noon, any_gap) * Z - Z), 1e-12);
+  EXPECT_LT(glm::length(read(silent, ScalarPlace::Last).at(noon, any_gap) * Z + Z), 1e-12);
   const std::string says = aem(type + "QUATERNION_TYPE = FIRST\n", "2026-03-01T12:00:00 1 0 0 0\n");
   EXPECT_TRUE(holds(refusal(says, ScalarPlace::Last), {"a.aem:14", "scalar first", "other"}));
   std::string cic = silent;
   cic.replace(0, 20, "CIC_AEM_VERS = 2.0");
   cic.replace(cic.find("2026-03-01T12:00:00 1"), 19, "61100 43200.0");
   EXPECT_TRUE(holds(refusal(cic), {"do not say"})) << refusal(cic);
-  EXPECT_LT(glm::length(read(cic, ScalarPlace::First).at(noon) * Z - Z), 1e-12);
+  EXPECT_LT(glm::length(read(cic, ScalarPlace::First).at(noon, any_gap) * Z - Z), 1e-12);
 }
 
 TEST_F(AttitudeMessage, BetweenRowsTheTurnIsEvenWhateverTheSigns) {
@@ -182,8 +184,53 @@ TEST_F(AttitudeMessage, BetweenRowsTheTurnIsEvenWhateverTheSigns) {
   const AttitudeHistory history = read(aem(
       "ATTITUDE_TYPE = QUATERNION\n",
       fmt::format("2026-03-01T12:00:00 0 0 0 1\n2026-03-01T12:01:00 0 0 {0} {0}\n", -s), "2.0"));
-  const Vec3 x = history.at(noon + 30.0) * X;
+  const Vec3 x = history.at(noon + 30.0, any_gap) * X;
   EXPECT_LT(glm::length(x - Vec3(s, s, 0.0)), 1e-12);
+}
+
+// Rows of 12:00, 12:10 and 12:20: 600 s exceed a longest gap of 599 s, not one of 601 s.
+TEST_F(AttitudeMessage, GapsAreRefusedWhereAnAttitudeIsAskedForUnlessItIsHeld) {
+  const std::string type = "ATTITUDE_TYPE = EULER_ANGLE\nATTITUDE_DIR = A2B\nEULER_ROT_SEQ = 321\n";
+  const AttitudeHistory history =
+      read(aem(type,
+               "2026-03-01T12:00:00 0 0 0\n2026-03-01T12:10:00 9 0 0\n"
+               "2026-03-01T12:20:00 9 0 0\n"));
+  const auto said = [&](double at_s, double longest_gap_s) -> std::string {
+    try {
+      (void)history.at(noon + at_s, longest_gap_s);
+    } catch (const base::Error& error) {
+      return error.what();
+    }
+    return "was not refused";
+  };
+  EXPECT_TRUE(holds(said(300.0, 599.0), {"a.aem:18", "gap of 600 s", "12:10:00Z", "36 deg"}))
+      << said(300.0, 599.0);
+  EXPECT_EQ(said(300.0, 601.0), "was not refused");
+  for (const double at_s : {0.0, 600.0, 900.0, 1200.0}) {
+    EXPECT_EQ(said(at_s, 599.0), "was not refused") << at_s;  // a row, or one attitude
+  }
+}
+
+// One row of 20 is turned by 61 deg: neither of the two jumps is ten times the other.
+TEST_F(AttitudeMessage, ASingleRowThatJumpsIsNamed) {
+  const std::string type = "ATTITUDE_TYPE = EULER_ANGLE\nATTITUDE_DIR = A2B\nEULER_ROT_SEQ = 321\n";
+  for (const int off : {-1, 0, 1, 7, 19}) {  // -1: none
+    std::string rows;
+    for (int k = 0; k < 20; ++k) {
+      rows += fmt::format("2026-03-01T12:{:02}:00 {} 0 0\n", k, k + (k == off ? 60 : 0));
+    }
+    warnings.clear();
+    (void)read(aem(type, rows));
+    EXPECT_EQ(warnings.size(), off < 0 ? 0U : 1U) << off;
+  }
+  // A slew of 12 deg from row to row begins, goes on and ends without a warning.
+  std::string rows;
+  for (int k = 0; k < 20; ++k) {
+    rows += fmt::format("2026-03-01T12:{:02}:00 {} 0 0\n", k, 12 * std::clamp(k - 5, 0, 5));
+  }
+  warnings.clear();
+  (void)read(aem(type, rows));
+  EXPECT_TRUE(warnings.empty());
 }
 
 TEST_F(AttitudeMessage, JumpsAreNamedAndBadFilesRefused) {

@@ -4,6 +4,9 @@
 
 #include <cmath>
 
+#include "base/files/exr_file.h"
+#include "base/files/png_file.h"
+#include "scenes/sky/airglow.h"
 #include "scenes/sky/albedo_grid.h"
 #include "scenes/sky/moon.h"
 #include "scenes/sky/sky.h"
@@ -167,6 +170,94 @@ TEST(AlbedoGridFile, BadFilesAreRefused) {
       EXPECT_TRUE(test::holds(error.what(), one.says)) << error.what();
     }
   }
+}
+
+// A map of 4 x 2 pixels: rows from the north, columns from -180 deg, middles at 45 and 135 deg.
+TEST(AlbedoGridFile, MapsOfPngAndExrAreTheGridOfTheirPixels) {
+  const test::SceneFolder folder;
+  const std::vector<std::uint8_t> bytes = {0, 51, 102, 153, 204, 255, 25, 75};
+  std::vector<std::uint16_t> words;
+  base::Image image{4, 2, {}};
+  std::vector<float>& y = image.add("Y");
+  for (std::size_t k = 0; k < bytes.size(); ++k) {
+    words.push_back(static_cast<std::uint16_t>(257 * bytes[k]));  // 65535 = 257 * 255
+    y[k] = static_cast<float>(bytes[k] / 255.0);
+  }
+  base::write_png(folder.path() / "8.png", 4, 2, 1, bytes);
+  base::write_png16(folder.path() / "16.png", 4, 2, words);
+  base::write_exr(folder.path() / "y.exr", image);
+  image.channels.clear();
+  for (const char* name : {"R", "G", "B"}) {
+    std::vector<float>& channel = image.add(name);
+    for (std::size_t k = 0; k < bytes.size(); ++k)
+      channel[k] = static_cast<float>(bytes[k] / 255.0);
+  }
+  base::write_exr(folder.path() / "rgb.exr", image);
+  for (const char* name : {"8.png", "16.png", "y.exr", "rgb.exr"}) {
+    const AlbedoGrid grid = read_albedo_grid(folder.path() / name, {});
+    EXPECT_EQ(grid.latitudes(), (std::vector<double>{-45.0, 45.0})) << name;
+    EXPECT_EQ(grid.longitudes(), (std::vector<double>{-135.0, -45.0, 45.0, 135.0})) << name;
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_NEAR(grid.values()[4 + k], bytes[k] / 255.0, 1e-7) << name;  // north
+      EXPECT_NEAR(grid.values()[k], bytes[4 + k] / 255.0, 1e-7) << name;
+    }
+  }
+  // 16 bits are not rounded to 8.
+  words.assign(8, 12345);
+  base::write_png16(folder.path() / "16.png", 4, 2, words);
+  EXPECT_NEAR(read_albedo_grid(folder.path() / "16.png", {}).values()[0], 12345 / 65535.0, 1e-15);
+}
+
+TEST(AlbedoGridFile, BadMapsAreRefused) {
+  const test::SceneFolder folder;
+  base::write_png(folder.path() / "rgb.png", 1, 1, 3, std::vector<std::uint8_t>{1, 2, 3});
+  base::write_png(folder.path() / "cut.png", 64, 64, 1, std::vector<std::uint8_t>(4096, 7));
+  std::filesystem::resize_file(folder.path() / "cut.png", 60);
+  folder.put("text.png", "latitude_deg, albedo\n");
+  base::Image image{2, 1, {}};
+  image.add("Y") = {0.5F, 1.5F};
+  base::write_exr(folder.path() / "high.exr", image);
+  image.channels.clear();
+  for (const char* name : {"R", "G", "B"}) image.add(name)[0] = name[0] == 'R' ? 1.0F : 0.5F;
+  base::write_exr(folder.path() / "red.exr", image);
+  const struct {
+    const char* file;
+    std::vector<std::string> says;
+  } bad[] = {{"rgb.png", {"rgb.png", "no plain grey", "8 or 16 bits"}},
+             {"cut.png", {"cut.png", "broken PNG"}},
+             {"text.png", {"text.png", "broken PNG"}},
+             {"high.exr", {"high.exr", "1.5 at column 1, row 0", "from 0 to 1"}},
+             {"red.exr", {"red.exr", "channels", "equal"}},
+             {"none.exr", {"none.exr"}}};
+  for (const auto& one : bad) {
+    try {
+      (void)read_albedo_grid(folder.path() / one.file, {});
+      ADD_FAILURE() << one.file;
+    } catch (const base::Error& error) {
+      EXPECT_TRUE(test::holds(error.what(), one.says)) << error.what();
+    }
+  }
+}
+
+// An even disc of radiance L and half angle a gives pi L sin^2 a on a plate that faces it.
+TEST(Airglow, LightsAPlateAsAnEvenDiscAndIsOffByDay) {
+  const test::SceneFolder folder;
+  const auto scene = [&](const char* sun) {
+    return folder.read(std::string("format = 1\n[earth]\ndirection = [0.6, 0, 0.8]\n"
+                                   "altitude_km = 425\n[airglow]\nradiance = 0.001\n[sun]\n") +
+                       sun);
+  };
+  const Scene dark = scene("direction = [0.6, 0, 0.8]\n");
+  const Scene day = scene("direction = [-0.6, 0, -0.8]\n");
+  Rgb on_plate(0.0);
+  for (const Lamp& lamp : dark.lamps) {
+    EXPECT_EQ(lamp.group, "airglow");
+    on_plate += -glm::dot(lamp.axis, dark.earth->direction) * lamp.illuminance_lx;
+  }
+  const double sine = std::sin(base::radians(dark.earth->half_angle_deg));
+  EXPECT_NEAR(on_plate.g, base::pi * 0.001 * sine * sine, 1e-12);
+  for (const Lamp& lamp : day.lamps) EXPECT_EQ(lamp.illuminance_lx, Rgb(0.0));
+  EXPECT_TRUE(test::holds(folder.refusal("format = 1\n[airglow]\n"), {"[airglow]", "[earth]"}));
 }
 
 }  // namespace
