@@ -238,14 +238,7 @@ void DataSet::place_camera(scenes::Scene& scene, const scenes::RayQuery& query,
   const std::vector<std::uint32_t> objects = targets_in(scene);
   for (std::size_t t = 0; t < objects.size(); ++t) {
     if (recipe_.targets[t].name != recipe_.camera.look_at_target) continue;
-    const scenes::Object& object = scene.objects[objects[t]];
-    scenes::Box box;
-    for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
-      for (const std::uint32_t v : scene.triangles[object.first_triangle + k].vertex) {
-        box.add(scene.vertices[v]);
-      }
-    }
-    target = box.middle();
+    target = scenes::bounds_of(scene, scene.objects[objects[t]]).middle();
   }
   for (std::size_t attempt = 0; attempt < most_attempts; ++attempt) {
     const CameraPose pose = draw_camera(recipe_, image, attempt, given, target);

@@ -15,6 +15,7 @@
 #include "scenes/sky/orbit.h"
 #include "scenes/text/message_text.h"
 #include "scenes/time/linkage.h"
+#include "scenes/view/motion.h"
 
 namespace earthshine::app {
 namespace {
@@ -272,6 +273,7 @@ void leave_moon_out(StudyPart& part, bool quiet) {
 void fill_part(const studies::StudyFile& study, const Common& common, StudyWay way,
                StudyPart& part) {
   scenes::Scene& scene = part.loaded.scene;
+  scenes::hold_still(scene);
   add_cctv(study, scene);
   mark_targets(study, scene);
   for (const scenes::Object& object : scene.objects) {
