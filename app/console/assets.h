@@ -18,5 +18,10 @@ namespace earthshine::app {
 [[nodiscard]] std::string_view view_body();
 [[nodiscard]] std::string_view view_script();
 [[nodiscard]] std::string_view view_script_hash();
+// Of solutions.
+[[nodiscard]] std::string_view solid_style();
+[[nodiscard]] std::string_view solid_body();
+[[nodiscard]] std::string_view solid_script();
+[[nodiscard]] std::string_view solid_script_hash();
 
 }  // namespace earthshine::app
