@@ -85,6 +85,12 @@ void add_camera(base::ExrHeader& result, const scenes::Camera& camera, int colum
     header.number("camera.aperture_m", camera.aperture_m);
     result.numbers.emplace_back("focus", static_cast<float>(camera.focus_m));
   }
+  if (camera.exposure_s > 0.0 || camera.line_s > 0.0) {
+    header.number("camera.exposure_s", camera.exposure_s);
+    header.number("camera.line_s", camera.from_below ? -camera.line_s : camera.line_s);
+    header.text("camera.velocity_m_s", numbers(camera.motion.velocity_m_s));
+    header.text("camera.spin_deg_s", numbers(camera.motion.spin_deg_s));
+  }
   header.text("camera.filter", std::string(scenes::filter_name(camera.filter)));
   header.number("camera.filter_width_px", camera.filter_width_px);
   write_matrices(result, matrices);

@@ -14,6 +14,7 @@
 #include "app/render/draw.h"
 #include "app/render/effect_table.h"
 #include "app/render/error_json.h"
+#include "app/render/instants.h"
 #include "app/render/light.h"
 #include "app/render/warm_scene.h"
 #include "app/tools/form_factors.h"
@@ -143,7 +144,7 @@ Json json_of(const scenes::Scene& scene, const scenes::Object& object) {
   const auto& [low, high] = scenes::bounds_of(scene, object);
   return {{"name", object.name},
           {"target", object.target},
-          {"velocity", three(object.velocity_m_s)},
+          {"velocity", three(object.motion.velocity_m_s)},
           {"triangles", object.triangle_count},
           {"area_m2", object.area_m2},
           {"bounds_m", {three(low), three(high)}},
@@ -233,6 +234,7 @@ std::shared_ptr<Frame> Session::render(const std::string& request_text,
   s.prepare(call, cameras, true, request.number("error"));
   app::want_usual_error(call, s.loaded.scene);
   const raytrace::RenderOptions options = app::picture_options(call, common, s.loaded, camera);
+  app::check_instants(call, s.loaded.scene, camera, options);
   app::check_memory(s.loaded, *s.query, app::solve_options(s.loaded.scene, common), &options,
                     !light);
   app::Solved given;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/gtc/quaternion.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -115,13 +116,20 @@ struct SurfaceHealth {
   std::size_t mixed_edges = 0;  // between faces of opposite winding
 };
 
+// Of a rigid body at the scene's moment, the middle of an exposure (scenes/view/motion.h).
+struct Motion {
+  Vec3 velocity_m_s{0.0};
+  Vec3 spin_deg_s{0.0};  // axis times rate, by the right-hand rule
+
+  [[nodiscard]] bool moves() const { return velocity_m_s != Vec3(0.0) || spin_deg_s != Vec3(0.0); }
+};
+
 struct Object {
   std::string name;
   bool target = false;  // visibility studies measure it
   std::string joint;    // that it hangs on; empty: none
-  // Against the cameras; pictures show it where it stands, studies add what a tube's lag makes of
-  // it.
-  Vec3 velocity_m_s{0.0};
+  Motion motion;
+  std::optional<Vec3> spin_about;  // point that turns in place; empty: the middle of its bounds
   Orient orient = Orient::Mended;
   std::uint32_t first_triangle = 0;
   std::uint32_t triangle_count = 0;
@@ -154,6 +162,7 @@ struct Lamp {
   Vec3 c0{1.0, 0.0, 0.0};  // measured: unit, across the axis, in the plane C0; C90: c0 x axis
   std::shared_ptr<const Photometry> photometry;  // measured
   std::string source;                            // measured: the file, as the scene names it
+  Motion motion;                                 // turns about its position
   Rgb illuminance_lx{0.0};                       // distant: on an unoccluded plane that faces it
 
   [[nodiscard]] bool is_distant() const { return kind == LampKind::Distant; }
@@ -270,7 +279,14 @@ struct Camera {
   std::string range_sensor;              // a [[range_sensor]] of the scene; empty: none
   FilterShape filter = FilterShape::Box;
   double filter_width_px = 1.0;  // full width of the filter's support
-  base::Location where;          // of its position in the scene file
+  Motion motion;                 // turns about its position
+  double exposure_s = 0.0;       // during which each row takes light
+  double line_s = 0.0;           // from the beginning of a row's exposure to the next row's
+  bool from_below = false;       // the last row begins
+  // Only light in this time is taken: an instant of a picture in which objects move.
+  double open_from_s = -std::numeric_limits<double>::infinity();
+  double open_until_s = std::numeric_limits<double>::infinity();
+  base::Location where;  // of its position in the scene file
   std::optional<base::Location> cctv_at, range_sensor_at;
 };
 

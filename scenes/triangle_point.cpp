@@ -45,4 +45,13 @@ double Corners::solid_angle() const {
                                                 glm::dot(b, c) * la + glm::dot(c, a) * lb);
 }
 
+Box bounds_of(const Scene& scene, const Object& object) {
+  Box box;
+  for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
+    const auto [a, b, c] = corners_of(scene, object.first_triangle + k);
+    box.add(a), box.add(b), box.add(c);
+  }
+  return box;
+}
+
 }  // namespace earthshine::scenes

@@ -57,4 +57,7 @@ struct Barycentric {
 [[nodiscard]] Barycentric barycentric(const Vec3& p, const Vec3& a, const Vec3& edge1,
                                       const Vec3& edge2);
 
+// Bounding box of the object's triangles.
+[[nodiscard]] Box bounds_of(const Scene& scene, const Object& object);
+
 }  // namespace earthshine::scenes

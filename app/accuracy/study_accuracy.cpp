@@ -18,6 +18,7 @@
 #include "app/study/plot.h"
 #include "app/study/study.h"
 #include "base/files/output_file.h"
+#include "scenes/view/motion.h"
 #include "studies/compare/compare.h"
 
 namespace earthshine::app {
@@ -69,6 +70,7 @@ void check_part(const AccuracyCall& call) {
 void run(const AccuracyCall& call, const Common& common) {
   check_part(call);
   LoadedScene loaded = load(call.scene, common.quiet);
+  scenes::hold_still(loaded.scene);
   const scenes::Camera& camera = camera_of(call, loaded.scene, common.quiet);
   prepare_folder(call.folder, file_names(), loaded.scene.files);
   refuse_inputs_in(fs::path(call.folder) / points_folder, loaded.scene.files);

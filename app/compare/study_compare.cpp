@@ -19,6 +19,7 @@
 #include "raytrace/light/distributed_area.h"
 #include "raytrace/solve_control/wanted_error.h"
 #include "scenes/effects/quality.h"
+#include "scenes/view/motion.h"
 #include "studies/compare/compare.h"
 #include "studies/compare/target_differences.h"
 #include "studies/cost/cost.h"
@@ -225,6 +226,7 @@ std::string plan_text(const Json& plan) {
 
 void run(const CompareCall& call, const Common& common) {
   LoadedScene loaded = load(call.scene, common.quiet);
+  scenes::hold_still(loaded.scene);
   want_usual_error({}, loaded.scene);
   const scenes::Camera& camera = camera_of(call, loaded.scene, common.quiet);
   (void)raytrace::earth_area(loaded.scene, call.area);  // a wrong one is refused before the folder

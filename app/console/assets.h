@@ -18,6 +18,11 @@ namespace earthshine::app {
 [[nodiscard]] std::string_view view_body();
 [[nodiscard]] std::string_view view_script();
 [[nodiscard]] std::string_view view_script_hash();
+// Of solutions.
+[[nodiscard]] std::string_view solid_style();
+[[nodiscard]] std::string_view solid_body();
+[[nodiscard]] std::string_view solid_script();
+[[nodiscard]] std::string_view solid_script_hash();
 
 // Of `console --serve`, also beside the console's style.
 [[nodiscard]] std::string_view live_style();

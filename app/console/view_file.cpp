@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `earthshine view`: a page that shows the layers of an EXR file and needs no network. Values are
+// `earthshine view`: a page that shows the layers of an EXR file, or the surfaces of a solution,
+// and needs no network. Values are
 // packed as half floats (app/console/pack.h).
 #include <fmt/format.h>
 
@@ -14,6 +15,7 @@
 #include "app/console/assets.h"
 #include "app/console/pack.h"
 #include "app/console/page.h"
+#include "app/console/view_solution.h"
 #include "app/output.h"
 #include "app/report/text.h"
 #include "base/files/exr_file.h"
@@ -149,6 +151,13 @@ void run(const ViewCall& call, const Common& common) {
                           : call.output;
   check_outputs({output}, {call.input});
   refuse_other_kind("-o", output, {".html"});
+  if (call.input.ends_with(".h5")) {
+    const SolutionPage page = solution_page(call.input);
+    base::write_text(output, page.html);
+    if (common.quiet) return;
+    return note(fmt::format("{}: {} patches, {} layers, {:.1f} MB", output, page.patches,
+                            page.layers, static_cast<double>(page.html.size()) / 1e6));
+  }
   const base::ExrFile file = base::read_exr(call.input);
   const std::string page = ViewPage(file, call.input).html();
   base::write_text(output, page);
@@ -161,9 +170,11 @@ void run(const ViewCall& call, const Common& common) {
 
 Command add_view(CLI::App& program) {
   CLI::App* parser = program.add_subcommand(
-      "view", "A picture as one HTML page: layers, exposure, false colours, pixel values");
+      "view", "A picture or a solution as one HTML page: layers, false colours, values");
   const auto call = std::make_shared<ViewCall>();
-  parser->add_option("FILE", call->input, "EXR file")->required()->type_name("");
+  parser->add_option("FILE", call->input, "EXR file, or HDF5 file of a solution")
+      ->required()
+      ->type_name("");
   parser->add_option("-o,--output", call->output, "Page to write; without it FILE.html")
       ->type_name("OUT.html");
   return {parser, [call](const Common& common) { run(*call, common); }};

@@ -158,8 +158,8 @@ class DataSet {
   void refuse_jointed_targets(const scenes::Scene& scene) const;
   void write_models(const scenes::Scene& scene) const;
   void place_camera(scenes::Scene& scene, const scenes::RayQuery& query, std::size_t image) const;
-  void write_picture(const RenderContext& context, const scenes::Camera& camera, const Drawn& drawn,
-                     const Draw& draw, std::size_t image) const;
+  void write_picture(const base::Image& picture, const Draw& draw,
+                     const std::optional<CctvSetup>& cctv, std::size_t image) const;
 
   Recipe recipe_;
   Common common_;
@@ -238,14 +238,7 @@ void DataSet::place_camera(scenes::Scene& scene, const scenes::RayQuery& query,
   const std::vector<std::uint32_t> objects = targets_in(scene);
   for (std::size_t t = 0; t < objects.size(); ++t) {
     if (recipe_.targets[t].name != recipe_.camera.look_at_target) continue;
-    const scenes::Object& object = scene.objects[objects[t]];
-    scenes::Box box;
-    for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
-      for (const std::uint32_t v : scene.triangles[object.first_triangle + k].vertex) {
-        box.add(scene.vertices[v]);
-      }
-    }
-    target = box.middle();
+    target = scenes::bounds_of(scene, scene.objects[objects[t]]).middle();
   }
   for (std::size_t attempt = 0; attempt < most_attempts; ++attempt) {
     const CameraPose pose = draw_camera(recipe_, image, attempt, given, target);
@@ -261,15 +254,10 @@ void DataSet::place_camera(scenes::Scene& scene, const scenes::RayQuery& query,
                     {}, "Widen the bounds of [camera], or reduce its clearance");
 }
 
-void DataSet::write_picture(const RenderContext& context, const scenes::Camera& camera,
-                            const Drawn& drawn, const Draw& draw, std::size_t image) const {
+void DataSet::write_picture(const base::Image& picture, const Draw& draw,
+                            const std::optional<CctvSetup>& cctv, std::size_t image) const {
   const fs::path rgb = folder_.bop("rgb", image);
-  const base::Image& picture = drawn.frame.image;
-  if (recipe_.cctv) {
-    CctvSetup setup = cctv_of_camera(context.loaded.scene, camera, context.common);
-    write_cctv(rgb.string(), setup, run_chain(setup, picture));
-    return;
-  }
+  if (cctv) return write_cctv(rgb.string(), *cctv, run_chain(*cctv, picture));
   const base::ToneMapped tone =
       draw.white_cd_m2 ? base::expose(picture, *draw.white_cd_m2, base::ToneCurve::Shoulder)
                        : base::tone_map(picture);
@@ -316,7 +304,9 @@ bool DataSet::make(std::size_t image) {
   const std::vector<float>& depth_m = picture.find("Z")->values;
   const Depth16 depth = depth16(depth_m);
   base::write_png16(folder_.bop("depth", image), map.columns, map.rows, depth.values);
-  write_picture(context, camera, drawn, draw, image);
+  std::optional<CctvSetup> cctv;
+  if (recipe_.cctv) cctv = cctv_of_camera(loaded.scene, camera, common);
+  write_picture(picture, draw, cctv, image);
   base::write_exr(folder_.layers(image), picture, picture_header(context, camera, drawn));
 
   const raytrace::CameraModel model = raytrace::make_camera_model(camera, map.columns, map.rows);
@@ -336,6 +326,7 @@ bool DataSet::make(std::size_t image) {
   record.update(
       labels_of({recipe_, draw, loaded.scene, query, model, map, depth_m, depth.scale_mm, image},
                 views, masks));
+  record["targets"] = sights_of(camera, picture, map, views, cctv);
   base::write_text(folder_.labels(image), dump_lines(record));
   return drawn.limit == raytrace::Limit::None;
 }

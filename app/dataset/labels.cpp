@@ -7,8 +7,10 @@
 #include <cmath>
 #include <map>
 
+#include "app/study/json_fields.h"
 #include "scenes/read/place_mesh.h"
 #include "scenes/triangle_point.h"
+#include "studies/sight/sight.h"
 
 namespace earthshine::app {
 namespace {
@@ -187,6 +189,22 @@ Json labels_of(const LabelCall& call, const std::vector<studies::TargetView>& vi
     labels["annotations"].push_back(annotation);
   }
   return labels;
+}
+
+Json sights_of(const scenes::Camera& camera, const base::Image& picture,
+               const studies::ObjectMap& map, const std::vector<studies::TargetView>& views,
+               const std::optional<CctvSetup>& cctv) {
+  std::optional<degrade::Setup> chain;
+  if (cctv) chain = cctv->chain;
+  const studies::CameraSight found =
+      studies::measure_sight(studies::plan_sight(camera, map, views), picture, chain);
+  Json sights = Json::array();
+  for (std::size_t t = 0; t < views.size(); ++t) {
+    Json sight = kept_json(found.targets[t]);
+    sight["name"] = views[t].name;
+    sights.push_back(std::move(sight));
+  }
+  return sights;
 }
 
 std::string model_ply(const scenes::Scene& scene, std::uint32_t object) {

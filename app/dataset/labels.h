@@ -5,9 +5,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/cctv/cctv.h"
 #include "app/dataset/recipe.h"
 #include "raytrace/camera/camera.h"
 #include "scenes/ray_query.h"
@@ -51,6 +53,13 @@ struct LabelCall {
 // of scene_gt, which lists all targets.
 [[nodiscard]] Json labels_of(const LabelCall& call, const std::vector<studies::TargetView>& views,
                              const std::vector<Masks>& masks);
+
+// {"name", "verdict", "signal" ...} of each target in the picture, with the keys of study.json: on
+// the monitor of the CCTV, without one by eye.
+[[nodiscard]] Json sights_of(const scenes::Camera& camera, const base::Image& picture,
+                             const studies::ObjectMap& map,
+                             const std::vector<studies::TargetView>& views,
+                             const std::optional<CctvSetup>& cctv);
 
 // Of the target in the model's axes: corners in mm, as PLY, and its size as models_info.json has
 // it.

@@ -72,6 +72,12 @@ Json scene_cache_key(const LoadedScene& loaded) {
 Json camera_cache_key(const scenes::Camera& camera) {
   base::Digest digest;
   for (const Vec3& v : {camera.position, camera.look_at, camera.up}) digest.add(v);
+  if (camera.exposure_s > 0.0 || camera.line_s > 0.0) {
+    digest.add(camera.motion.velocity_m_s);
+    digest.add(camera.motion.spin_deg_s);
+    for (const double x : {camera.exposure_s, camera.line_s}) digest.add(x);
+    digest.add(std::uint64_t{camera.from_below});
+  }
   for (const double x : {camera.fov_deg, camera.focus_m, camera.aperture_m}) digest.add(x);
   if (camera.intrinsics) {
     for (const double x : *camera.intrinsics) digest.add(x);

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "app/console.h"
+#include "app/render/instants.h"
 #include "app/render/light.h"
 #include "app/render/render_parts.h"
 #include "raytrace/paths/path_tracer.h"
@@ -81,7 +82,9 @@ Drawn draw_picture(const RenderContext& context, const scenes::Camera& camera, S
   drawn.options = picture_options(context.call, context.common, loaded, camera);
   drawn.options.time_limit_s = context.time_limit_s;
   const raytrace::RenderOptions& options = drawn.options;
+  const int instants = instants_of(loaded.scene, camera, options);
   drawn.frame = times.measure("render", [&] {
+    if (instants > 1) return draw_instants(context, camera, options, instants);
     return context.parts != nullptr ? context.parts->picture(camera)
                                     : draw_frame(context, camera, options);
   });
@@ -95,6 +98,13 @@ Drawn draw_picture(const RenderContext& context, const scenes::Camera& camera, S
         fmt::format("light in {} pixels that sources send there and no sample found; the error "
                     "counts it as missing",
                     pixels));
+  }
+  const bool camera_moves =
+      raytrace::make_camera_model(camera, options.columns, options.rows).moves();
+  if (camera_moves && options.indirect == raytrace::Indirect::Radiosity) {
+    drawn.errors.not_captured.emplace_back(
+        "images of sources smaller than a pixel, which are not searched for by a camera that "
+        "moves");
   }
   if (!loaded.scene.quality.error) return drawn;
   const double wanted = *loaded.scene.quality.error;

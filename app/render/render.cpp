@@ -17,6 +17,7 @@
 #include "app/provenance.h"
 #include "app/render/draw.h"
 #include "app/render/effect_table.h"
+#include "app/render/instants.h"
 #include "app/render/light.h"
 #include "app/render/render_parts.h"
 #include "base/error.h"
@@ -227,6 +228,7 @@ void run(RenderCall call, const Common& common) {
   }
   for (const Wanted& picture : pictures) {
     const raytrace::RenderOptions options = picture_options(call, common, loaded, *picture.camera);
+    check_instants(call, loaded.scene, *picture.camera, options);
     check_memory(loaded, query, solve_options(loaded.scene, common), &options,
                  call.solution.empty());
   }

@@ -79,18 +79,13 @@ void describe(Fields& fields, Either<studies::Reason> auto& reason) {
 }
 
 template <class Fields>
-void describe(Fields& fields, Either<TargetFindings> auto& found) {
-  auto& sight = found.sight;
+void describe(Fields& fields, Either<studies::Sight> auto& sight) {
   fields.word("verdict", sight.verdict, studies::Verdict::Hidden);
   fields.part("probability", sight.probability);
   fields("pixels", sight.pixels);
   fields("visible_fraction", sight.visible_fraction);
   fields("cut_by_frame", sight.cut_by_frame);
   fields("black_back", sight.black_back);
-  fields("lit_fraction", found.lit_fraction);
-  fields.shares("lit_by", found.lit_by);
-  fields.shares("light_by", found.light_by);
-  fields.light("light_from", "light_by_way_of", found.light_from);
   fields("angle_deg", sight.angle_deg);
   fields("tv_lines", sight.tv_lines);
   fields("luminance", sight.luminance);
@@ -104,6 +99,15 @@ void describe(Fields& fields, Either<TargetFindings> auto& found) {
   fields("crushed", sight.crushed);
   fields("shown_from", sight.shown_from);
   fields("shown_to", sight.shown_to);
+}
+
+template <class Fields>
+void describe(Fields& fields, Either<TargetFindings> auto& found) {
+  describe(fields, found.sight);
+  fields("lit_fraction", found.lit_fraction);
+  fields.shares("lit_by", found.lit_by);
+  fields.shares("light_by", found.light_by);
+  fields.light("light_from", "light_by_way_of", found.light_from);
   fields("luminance_error", found.luminance_error);
   fields("luminance_bound", found.luminance_bound);
   fields("picture_noise", found.noise.relative);

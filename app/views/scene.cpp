@@ -15,6 +15,7 @@
 #include "scenes/sky/orbit.h"
 #include "scenes/text/message_text.h"
 #include "scenes/time/linkage.h"
+#include "scenes/view/motion.h"
 
 namespace earthshine::app {
 namespace {
@@ -292,6 +293,7 @@ std::string times_of(const StudyWay& way) {
 void fill_part(const studies::StudyFile& study, const Common& common, StudyWay way, bool one_pose,
                StudyPart& part) {
   scenes::Scene& scene = part.loaded.scene;
+  scenes::hold_still(scene);
   add_cctv(study, scene);
   mark_targets(study, scene);
   for (const scenes::Object& object : scene.objects) {

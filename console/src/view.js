@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of `earthshine view`: one layer at a time with an exposure, or in false colours with a scale.
-const byId = (id) => document.getElementById(id);
-const data = JSON.parse(byId("data").textContent);
 const shown = { layer: null, planes: null, luminance: null, base: 1, top: 0 };
 
 const luminanceOfPlanes = ([r, g, b]) => {
@@ -53,14 +51,7 @@ const draw = () => {
   canvas.getContext("2d").putImageData(new ImageData(bytesOf(), data.columns, data.rows), 0, 0);
   byId("stops").value = `${(shown.base * 10 ** power).toPrecision(3)} ${shown.layer.unit}`;
   byId("scale").hidden = !isFalse;
-  const colours = falseAnchors.map((hex) => `#${hex}`).reverse();
-  byId("ramp").style.background = `linear-gradient(${colours.join(",")})`;
-  byId("unit").textContent = shown.layer.unit;
-  byId("marks").replaceChildren(...Array.from({ length: falseDecades + 1 }, (_, k) => {
-    const mark = document.createElement("span");
-    mark.textContent = (10 ** (shown.top + power - k)).toPrecision(2);
-    return mark;
-  }));
+  showScale(shown.top + power, shown.layer.unit);
 };
 
 const choose = async () => {
@@ -99,17 +90,8 @@ byId("picture").addEventListener("keydown", (event) => {
   cursor.y = Math.max(0, Math.min(data.rows - 1, cursor.y + step[1]));
   read(cursor.x, cursor.y);
 });
-byId("name").textContent = data.name;
-for (const layer of data.layers) byId("layer").add(new Option(layer.name));
-for (const [name, value] of data.facts) {
-  for (const [tag, text] of [["dt", name], ["dd", value]]) {
-    byId("facts").append(Object.assign(document.createElement(tag), { textContent: text }));
-  }
-}
+showFile();
 byId("layer").addEventListener("change", choose);
 byId("false").addEventListener("change", draw);
 byId("white").addEventListener("input", draw);
-choose().catch((error) => {
-  byId("problem").hidden = false;
-  byId("problem").textContent = `The page cannot show its data: ${error.message}`;
-});
+choose().catch(showProblem);

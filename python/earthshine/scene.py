@@ -57,7 +57,7 @@ class Entry:
 
 
 class Camera(Entry):
-    """A [[camera]]: position, look_at, up, fov_deg (vertical, full) or K, distortion, fisheye, resolution (columns, rows), focus and aperture (m), cctv ..."""
+    """A [[camera]]: position, look_at, up, fov_deg (vertical, full) or K, distortion, fisheye, resolution (columns, rows), focus and aperture (m), exposure_s and line_s (rolling shutter), velocity (m/s), spin (degrees/s), cctv ..."""
 
     @property
     def to_world(self) -> np.ndarray:
@@ -97,7 +97,7 @@ class Camera(Entry):
 
 
 class Body(Entry):
-    """An [[object]]: translate, rotate (degrees about x, then y, then z), scale, material, target, velocity (m/s) ..."""
+    """An [[object]]: translate, rotate (degrees about x, then y, then z), scale, material, target, velocity (m/s), spin (degrees/s) ..."""
 
     @property
     def pose(self) -> np.ndarray:

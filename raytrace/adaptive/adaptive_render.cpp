@@ -313,7 +313,7 @@ class AdaptiveRender {
   // Samples for light that few samples find. With fixed numbers, only light that a crop finds
   // alike.
   void shade_witnessed() {
-    if (ends()) return;
+    if (ends() || camera_.moves()) return;  // its features have places in a still picture
     const bool fixed = !allocator_.has_rounds();
     witness_.emplace(shared_, camera_,
                      WitnessOptions{options_.error, fixed ? 0.0 : sums_->mean_luminance(),

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenes/triangle_point.h"
+#include "scenes/view/motion.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -52,11 +53,33 @@ CameraModel make_camera_model(const scenes::Camera& camera, int columns, int row
   model.projection = scenes::Projection(camera, columns, rows);
   model.columns = columns;
   model.rows = rows;
+  const scenes::Shutter shutter(camera);
+  model.motion = camera.motion;
+  model.exposure_s = shutter.exposure_s;
+  model.readout_s = shutter.readout_s;
+  model.from_s = camera.open_from_s;
+  model.until_s = camera.open_until_s;
   if (camera.aperture_m > 0.0 && camera.focus_m > 0.0) {
     model.focus_m = camera.focus_m;
     model.lens_radius_m = camera.aperture_m / 2;
   }
   return model;
+}
+
+CameraModel CameraModel::at(double t_s) const {
+  CameraModel moved = *this;
+  const scenes::MovedBy by(motion, position, t_s);
+  moved.position = by.point(position);
+  for (Vec3* axis : {&moved.forward, &moved.right, &moved.up}) *axis = by.direction(*axis);
+  moved.motion = {};
+  return moved;
+}
+
+CameraModel CameraModel::at_row(double y, double u) const {
+  const double middle = ((std::floor(y) + 0.5) / rows - 0.5) * readout_s;
+  const double begin = std::clamp(from_s, middle - 0.5 * exposure_s, middle + 0.5 * exposure_s);
+  const double end = std::clamp(until_s, middle - 0.5 * exposure_s, middle + 0.5 * exposure_s);
+  return at(begin + u * (end - begin));
 }
 
 Vec3 CameraModel::to_camera(const Vec3& point) const {

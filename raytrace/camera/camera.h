@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include "scenes/ray_query.h"
 #include "scenes/scene.h"
@@ -39,6 +40,18 @@ struct CameraModel {
   double lens_radius_m = 0.0;  // 0: pinhole
   int columns = 0, rows = 0;
 
+  // Motion during the exposure of a row, and from row to row (scenes/view/motion.h).
+  scenes::Motion motion;
+  double exposure_s = 0.0, readout_s = 0.0;
+  double from_s = -std::numeric_limits<double>::infinity();  // } only this part of the exposures
+  double until_s = std::numeric_limits<double>::infinity();  // }
+  [[nodiscard]] bool moves() const {
+    return motion.moves() && (exposure_s > 0.0 || readout_s != 0.0);
+  }
+  // The camera, at rest, at that time; at a share u in [0, 1] of the exposure of pixels in row y.
+  [[nodiscard]] CameraModel at(double t_s) const;
+  [[nodiscard]] CameraModel at_row(double y, double u) const;
+
   // (x, y) in pixels from the top left corner: the centre of pixel (i, j) is (i + 0.5, j + 0.5).
   // (lens_u, lens_v) in [0,1)^2 determine the point of the lens.
   [[nodiscard]] Ray ray(double x, double y, double lens_u, double lens_v) const;
@@ -59,6 +72,15 @@ struct CameraModel {
  private:
   [[nodiscard]] Vec3 through_lens(const Vec3& on_lens, const Vec3& point) const;
 };
+
+// The sample's camera: `camera` itself if it does not move, otherwise at a time of the exposure,
+// which is kept in `moved`.
+inline const CameraModel& camera_of_sample(const CameraModel& camera, double y, double u,
+                                           CameraModel& moved) {
+  if (!camera.moves()) return camera;
+  moved = camera.at_row(y, u);
+  return moved;
+}
 
 [[nodiscard]] CameraModel make_camera_model(const scenes::Camera& camera, int columns, int rows);
 

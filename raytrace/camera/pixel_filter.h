@@ -50,13 +50,21 @@ class PixelFilter {
 class PixelPoints {
  public:
   PixelPoints(std::uint64_t seed, std::uint64_t pixel)
-      : halves_{base::SobolOwen4(base::Key(seed, base::Stream::Pixel, pixel).with(0)),
-                base::SobolOwen4(base::Key(seed, base::Stream::Pixel, pixel).with(1))} {}
+      : key_(seed, base::Stream::Pixel, pixel),
+        halves_{base::SobolOwen4(key_.with(0)), base::SobolOwen4(key_.with(1))} {}
   [[nodiscard]] std::array<float, 4> point(std::size_t sample) const {
     return halves_[sample % 2].point(static_cast<std::uint32_t>(sample / 2));
   }
+  // Time of the sample in the exposure, in [0, 1). Of a pinhole the point of the lens, stratified
+  // together with the place in the pixel: the edges of a picture in motion converge as still ones.
+  [[nodiscard]] double time(std::size_t sample, bool has_lens) const {
+    if (!has_lens) return double(point(sample)[2]);
+    const base::SobolOwen4 times(key_.with(2 + sample % 2));
+    return double(times.point(static_cast<std::uint32_t>(sample / 2))[0]);
+  }
 
  private:
+  base::Key key_;
   std::array<base::SobolOwen4, 2> halves_;
 };
 

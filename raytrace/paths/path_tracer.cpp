@@ -147,7 +147,10 @@ Frame trace_paths(const scenes::World& world, const scenes::Camera& camera,
         const double at_y = double(in_y) + rng.next();
         const double lens_u = rng.next();
         const double lens_v = rng.next();
-        sums.add(walker.walk(model.ray(at_x, at_y, lens_u, lens_v), rng), walker);
+        CameraModel moved;
+        const CameraModel& then =
+            model.moves() ? camera_of_sample(model, at_y, rng.next(), moved) : model;
+        sums.add(walker.walk(then.ray(at_x, at_y, lens_u, lens_v), rng), walker);
       }
       store(sums, y * columns + x, frame);
       ++finished[y];

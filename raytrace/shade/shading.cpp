@@ -47,7 +47,6 @@ PixelShader::PixelShader(const ShadingScene& shared)
 
 void PixelShader::begin_pixel(const CameraModel& camera, int x, int y, std::size_t first,
                               std::size_t count, bool by_layer) {
-  camera_ = &camera;
   pixel_x_ = x;
   pixel_y_ = y;
   pixel_ = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(camera.columns) +
@@ -62,7 +61,9 @@ void PixelShader::begin_pixel(const CameraModel& camera, int x, int y, std::size
   gather_points_ = {base::SobolOwen4(key.with(0)), base::SobolOwen4(key.with(1))};
 }
 
-void PixelShader::add_sample(std::size_t sample, const Ray& ray, const scenes::Hit& hit) {
+void PixelShader::add_sample(std::size_t sample, const CameraModel& camera, const Ray& ray,
+                             const scenes::Hit& hit) {
+  camera_ = &camera;
   sample_ = sample;
   gathered_ = 0;
   source_of_sample_ = 0.0;

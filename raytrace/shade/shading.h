@@ -63,7 +63,9 @@ class PixelShader {
     x_ = x;
     y_ = y;
   }
-  void add_sample(std::size_t sample, const Ray& ray, const scenes::Hit& hit);
+  // camera: at the sample's time.
+  void add_sample(std::size_t sample, const CameraModel& camera, const Ray& ray,
+                  const scenes::Hit& hit);
   void end_pixel();  // traces the queued rays
 
   // Sum over samples of radiance, per image layer; then, with splits_parts, per Part.

@@ -210,15 +210,6 @@ class Bodies {
 
 }  // namespace
 
-Box bounds_of(const Scene& scene, const Object& object) {
-  Box box;
-  for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
-    const auto [a, b, c] = corners_of(scene, object.first_triangle + k);
-    box.add(a), box.add(b), box.add(c);
-  }
-  return box;
-}
-
 Crossings find_crossings(const Scene& scene) {
   Crossings found;
   if (scene.triangles.empty()) return found;

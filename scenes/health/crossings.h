@@ -11,9 +11,6 @@
 
 namespace earthshine::scenes {
 
-// Bounding box of the object's triangles.
-[[nodiscard]] Box bounds_of(const Scene& scene, const Object& object);
-
 struct Crossing {
   std::uint32_t a = 0, b = 0;  // objects, a < b
   std::size_t triangles = 0;   // triangles of both that cross triangles of the other

@@ -12,9 +12,12 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr std::string_view camera_keys[] = {
-    "name", "position",   "look_at", "up",           "fov_deg",      "focus",   "aperture",
-    "cctv", "resolution", "filter",  "filter_width", "range_sensor", "fx",      "fy",
-    "cx",   "cy",         "K",       "pixel_origin", "distortion",   "fisheye", "joint"};
+    "name",     "position",   "look_at",    "up",           "fov_deg",      "focus",   "aperture",
+    "cctv",     "resolution", "filter",     "filter_width", "range_sensor", "fx",      "fy",
+    "cx",       "cy",         "K",          "pixel_origin", "distortion",   "fisheye", "joint",
+    "velocity", "spin",       "exposure_s", "line_s",       "row_order"};
+constexpr std::string_view row_orders[] = {"down", "up"};
+constexpr Range shutter_s{0.0, 3600.0};
 constexpr std::string_view pixel_origins[] = {"corner", "center"};
 constexpr Range focal_px{0.0, 1e7, true};
 constexpr Range centre_px{-1e6, 1e6};
@@ -70,6 +73,17 @@ void read_lens(Camera& camera, const TableReader& table) {
   }
   camera.focus_m = focus.value_or(0.0);
   camera.aperture_m = aperture.value_or(0.0);
+}
+
+void read_shutter(Camera& camera, const TableReader& table) {
+  camera.motion = read_motion(table);
+  camera.exposure_s = table.number("exposure_s", shutter_s).value_or(0.0);
+  camera.line_s = table.number("line_s", shutter_s).value_or(0.0);
+  camera.from_below = table.choice("row_order", row_orders).value_or("down") == "up";
+  if (table.has("row_order") && !table.has("line_s")) {
+    table.fail("row_order", "stands without \"line_s\"",
+               "it is the order in which a rolling shutter exposes the rows");
+  }
 }
 
 std::vector<double> read_numbers(const TableReader& table, std::string_view key) {
@@ -248,6 +262,7 @@ Camera read_camera(const TomlNode& node, double unit_m, const JointPoses& joints
   read_resolution(camera, table);
   read_intrinsics(camera, table);
   read_lens(camera, table);
+  read_shutter(camera, table);
   read_distortion(camera, table);
   read_filter(camera, table);
   camera.cctv = table.text("cctv").value_or("");

@@ -14,9 +14,9 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr const char* title = "[[object]]";
-constexpr std::string_view instance_keys[] = {"name",   "instance_of", "translate",
-                                              "rotate", "scale",       "material",
-                                              "target", "velocity",    "joint"};
+constexpr std::string_view instance_keys[] = {"name",  "instance_of", "translate", "rotate",
+                                              "scale", "material",    "target",    "velocity",
+                                              "joint", "spin",        "spin_about"};
 
 // Transform from the original's placement to the instance's.
 Instance relation(std::uint32_t object, const Placement& from, const Placement& to) {
@@ -98,7 +98,7 @@ void copy_vertices(Scene& scene, const TableReader& table, const Vertices& of,
   }
 }
 
-void add(Scene& scene, const TableReader& table, Instance instance,
+void add(Scene& scene, const TableReader& table, Instance instance, double unit_m,
          std::size_t own_material_count) {
   check_alone(scene, table, instance);
   const Object& original = scene.objects[instance.object];
@@ -108,7 +108,8 @@ void add(Scene& scene, const TableReader& table, Instance instance,
   object.unused.clear();
   object.target = table.flag("target").value_or(false);
   object.joint = table.text("joint").value_or("");
-  object.velocity_m_s = read_velocity(table);
+  object.motion = read_motion(table);
+  object.spin_about = read_spin_about(table, unit_m);
   ShelvedMesh none;
   MaterialChoice choice(scene, table, none, own_material_count);
 
@@ -186,7 +187,7 @@ void InstanceReader::finish(Scene& scene, double unit_m, const JointPoses& joint
   for (std::size_t k = 0; k < waiting_.size(); ++k) {
     TableReader table(*waiting_[k], title, instance_keys);
     (void)table.read_name();
-    add(scene, table, instances[k], own_material_count);
+    add(scene, table, instances[k], unit_m, own_material_count);
   }
 }
 

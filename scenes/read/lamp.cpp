@@ -13,6 +13,7 @@
 namespace earthshine::scenes {
 namespace {
 
+constexpr std::string_view motion_keys[] = {"velocity", "spin"};
 constexpr std::string_view point_keys[] = {"joint",    "name",      "group", "type",
                                            "position", "intensity", "flux"};
 constexpr std::string_view spot_keys[] = {"joint", "name",      "group", "type",     "position",
@@ -178,7 +179,7 @@ constexpr std::array<LampReader, lamp_rows.size()> readers = {{{point_keys, read
 
 // Keys of all types.
 std::vector<std::string_view> all_keys() {
-  std::vector<std::string_view> keys;
+  std::vector<std::string_view> keys(std::begin(motion_keys), std::end(motion_keys));
   for (const LampReader& reader : readers) {
     for (const std::string_view key : reader.keys) {
       if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
@@ -257,7 +258,12 @@ Lamp read_lamp(const TomlNode& node, double unit_m, const JointPoses& joints,
   const auto kind = std::find(types.begin(), types.end(), type) - types.begin();
   lamp.kind = static_cast<LampKind>(kind);
   const LampReader& reader = readers[static_cast<std::size_t>(kind)];
-  table.allow_only(reader.keys, fmt::format("a light of type \"{}\"", type));
+  std::vector<std::string_view> allowed(reader.keys.begin(), reader.keys.end());
+  if (lamp.kind != LampKind::Distant) {
+    allowed.insert(allowed.end(), std::begin(motion_keys), std::end(motion_keys));
+  }
+  table.allow_only(allowed, fmt::format("a light of type \"{}\"", type));
+  lamp.motion = read_motion(table);
   reader.read(lamp, table, unit_m, shelf);
   const Pose pose = joints.of(table);
   lamp.position = pose.point(lamp.position);

@@ -16,14 +16,15 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr std::string_view object_keys[] = {
-    "name",      "mesh",        "part",     "shape",    "material", "translate",
-    "rotate",    "scale",       "target",   "inward",   "corners",  "min",
-    "max",       "center",      "radius",   "segments", "from",     "to",
-    "caps",      "normal",      "orient",   "lights",   "cameras",  "smooth_deg",
-    "round_deg", "instance_of", "velocity", "axes",     "joint"};
+    "name",   "mesh",     "part",       "shape",     "material",    "translate", "rotate",
+    "scale",  "target",   "inward",     "corners",   "min",         "max",       "center",
+    "radius", "segments", "from",       "to",        "caps",        "normal",    "orient",
+    "lights", "cameras",  "smooth_deg", "round_deg", "instance_of", "velocity",  "axes",
+    "joint",  "spin",     "spin_about"};
 constexpr std::string_view shapes[] = {"quad", "box", "sphere", "cylinder", "disk"};
-constexpr std::string_view common_keys[] = {"name",   "material", "translate", "rotate",   "scale",
-                                            "target", "inward",   "orient",    "velocity", "joint"};
+constexpr std::string_view common_keys[] = {"name",     "material", "translate", "rotate",
+                                            "scale",    "target",   "inward",    "orient",
+                                            "velocity", "joint",    "spin",      "spin_about"};
 constexpr std::string_view orients[] = {"outward", "inward", "as-is", "two-sided"};
 constexpr std::string_view axes_known[] = {"y-up", "as-is"};
 constexpr Range lengths{-largest_length, largest_length};
@@ -245,8 +246,16 @@ ShelvedMesh& MeshShelf::take(const std::filesystem::path& named, const base::Loc
   return *shelved;
 }
 
-Vec3 read_velocity(const TableReader& table) {
-  return table.vector("velocity", {-1e4, 1e4}).value_or(Vec3(0.0));
+Motion read_motion(const TableReader& table) {
+  return {table.vector("velocity", {-1e4, 1e4}).value_or(Vec3(0.0)),
+          table.vector("spin", {-1e6, 1e6}).value_or(Vec3(0.0))};
+}
+
+std::optional<Vec3> read_spin_about(const TableReader& table, double unit_m) {
+  if (table.has("spin_about") && !table.has("spin")) {
+    table.fail("spin_about", "stands without \"spin\"", "it is the point about which spin turns");
+  }
+  return table.position("spin_about", unit_m);
 }
 
 Placement read_object(Scene& scene, const TomlNode& node, double unit_m, const JointPoses& joints,
@@ -255,7 +264,8 @@ Placement read_object(Scene& scene, const TomlNode& node, double unit_m, const J
   Object object;
   object.name = table.read_name();
   object.target = table.flag("target").value_or(false);
-  object.velocity_m_s = read_velocity(table);
+  object.motion = read_motion(table);
+  object.spin_about = read_spin_about(table, unit_m);
   const auto named = table.text("mesh");
   const auto shape = table.choice("shape", shapes);
   if (named && shape)

@@ -116,8 +116,10 @@ class MeshShelf {
 [[nodiscard]] Placement read_placement(const TableReader& table, double unit_m,
                                        const JointPoses& joints);
 
-// velocity of an object, m/s.
-[[nodiscard]] Vec3 read_velocity(const TableReader& table);
+// velocity, m/s, and spin, deg/s, in the scene's axes.
+[[nodiscard]] Motion read_motion(const TableReader& table);
+// spin_about of an object.
+[[nodiscard]] std::optional<Vec3> read_spin_about(const TableReader& table, double unit_m);
 
 // Adds the object's triangles, and the materials that only its mesh defines, to the scene, and to
 // `fronts` the sides that the mesh's normals say are fronts. Says how it is placed.

@@ -168,8 +168,8 @@ glm::dvec2 Projection::start_for(const glm::dvec2& film) const {
   if (radial(limit_) <= wanted) return film * (2.0 * limit_ / wanted);
   double low = 0.0, high = limit_;
   for (int k = 0; k < bisections; ++k) {
-    const double middle = 0.5 * (low + high);
-    (radial(middle) < wanted ? low : high) = middle;
+    const double half = 0.5 * (low + high);
+    (radial(half) < wanted ? low : high) = half;
   }
   return film * (low / wanted);
 }

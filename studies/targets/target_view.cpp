@@ -11,6 +11,7 @@
 #include "raytrace/camera/camera.h"
 #include "scenes/ray_query.h"
 #include "scenes/triangle_point.h"
+#include "scenes/view/motion.h"
 
 namespace earthshine::studies {
 namespace {
@@ -136,19 +137,27 @@ bool reaches_frame(const scenes::Scene& scene, const raytrace::CameraModel& mode
 std::array<double, 2> motion_of(const scenes::Scene& scene, const raytrace::CameraModel& model,
                                 std::uint32_t object) {
   const scenes::Object& record = scene.objects[object];
-  if (record.velocity_m_s == Vec3(0.0) || record.triangle_count == 0) return {0.0, 0.0};
-  scenes::Box box;
-  for (std::uint32_t k = 0; k < record.triangle_count; ++k) {
-    for (const std::uint32_t v : scene.triangles[record.first_triangle + k].vertex) {
-      box.add(scene.vertices[v]);
-    }
+  if (!(record.motion.moves() || model.motion.moves()) || record.triangle_count == 0) {
+    return {0.0, 0.0};
   }
-  if (!model.projection.is_before(model.to_camera(box.middle()))) return {0.0, 0.0};
+  const Vec3 middle = scenes::bounds_of(scene, record).middle();
+  if (!model.projection.is_before(model.to_camera(middle))) return {0.0, 0.0};
+  const Vec3 about = scenes::spin_centre(scene, record);
   // A central difference over a time in which it moves by a millionth of its distance.
-  const Vec3 middle = box.middle(), velocity = record.velocity_m_s;
-  const double dt = 1e-6 * glm::length(middle - model.position) / glm::length(velocity);
-  const glm::dvec2 moved = model.film_from(model.position, middle + dt * velocity) -
-                           model.film_from(model.position, middle - dt * velocity);
+  const double turn = base::radians(glm::length(record.motion.spin_deg_s)) *
+                          glm::length(middle - about) / glm::length(middle - model.position) +
+                      base::radians(glm::length(model.motion.spin_deg_s));
+  const double speed = glm::length(record.motion.velocity_m_s - model.motion.velocity_m_s) /
+                           glm::length(middle - model.position) +
+                       turn;
+  if (!(speed > 0.0)) return {0.0, 0.0};
+  const double dt = 1e-6 / speed;
+  const auto film = [&](double t_s) {
+    const raytrace::CameraModel camera = model.at(t_s);
+    return camera.film_from(camera.position,
+                            scenes::MovedBy(record.motion, about, t_s).point(middle));
+  };
+  const glm::dvec2 moved = film(dt) - film(-dt);
   return {moved.x / (2.0 * dt), moved.y / (2.0 * dt)};
 }
 

@@ -53,7 +53,7 @@ struct TargetView {
   // Seen pixels with the black back of a one-sided surface: the luminance of the real back is
   // unknown.
   std::vector<std::uint32_t> black_back;
-  // Of the target's centre in the picture, to the right and down, from Object::velocity_m_s.
+  // Of the target's centre in the picture, to the right and down, against the camera.
   std::array<double, 2> motion_px_s = {0.0, 0.0};
 
   [[nodiscard]] bool in_view() const { return pixels > 0; }

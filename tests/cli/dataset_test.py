@@ -9,6 +9,7 @@ import unittest
 import exr
 import png
 import program
+import study_table
 
 SCENE = """format = 1
 unit = "cm"
@@ -196,6 +197,36 @@ class Dataset(program.Case):
         self.done("dataset", "set.toml", "-o", "parts", "-q")
         self.assertEqual(before, (self.folder / "parts/images/000003.json").stat().st_mtime_ns)  # not drawn again
         self.assertEqual(self.files("out"), self.files("parts"))
+
+    def test_targets_are_judged_as_a_study_judges_them(self):
+        """The same scene and pose in `study visibility`: what depends on geometry alone is equal. Both pictures have a
+        stated error of at most 2 %, independent of each other, so that means over a target, whose noise is at most
+        the picture's, differ by less than 4 * 2^(1/2) * 2 % = 11.3 %; the SNR is between a power 1/2 (photons) and 1
+        (readout) of the light."""
+        for cctv, chosen in (("", "eye"), ('cctv = "sit-monochrome"\n', "signal")):
+            self.write("a.toml", SCENE + cctv)
+            self.write("set.toml", DATASET.replace("error = 0.3", f"error = 0.02\ncctv = {'true' if cctv else 'false'}"))
+            self.done("dataset", "set.toml", "-o", f"out-{chosen}", "-q", "--images", "2")
+            image = json.loads((self.folder / f"out-{chosen}/images/000002.json").read_text())
+            pose, sets = image["drawn"]["camera"], image["drawn"]["set"]
+            for key, unit in (("position", 100), ("look_at", 100), ("up", 1)):
+                sets.append(f"camera.A.{key}={[unit * x for x in pose[key + ('' if key == 'up' else '_m')]]}")
+            self.done("study", "visibility", "a.toml", "-o", f"study-{chosen}", "-q", *(word for one in sets for word in ("--set", one)))
+            expected = study_table.opened(json.loads((self.folder / f"study-{chosen}/study.json").read_text()))["results"][0]
+            target = image["targets"][0]
+            self.assertEqual(target["name"], "cube")
+            self.assertGreater(target["pixels"], 30)
+            for key in ("verdict", "pixels", "visible_fraction", "cut_by_frame", "angle_deg", "tv_lines"):
+                value = expected[key]
+                if isinstance(value, float):
+                    self.assertAlmostEqual(target[key], value, delta=1e-3 * value, msg=key)  # study.json: four digits
+                else:
+                    self.assertEqual(target[key], value, key)
+            for key in ("luminance", "surround"):
+                self.assertLess(abs(target[key] / expected[key] - 1), 0.113, key)
+            self.assertEqual(target["signal"] is None, chosen == "eye")
+            if cctv:
+                self.assertLess(abs(math.log(target["signal"]["snr"] / expected["signal"]["snr"])), 0.113)
 
     def test_the_camera_is_never_in_a_body(self):
         text = DATASET.replace("radius = [1.4, 2.5]", "radius = [0.05, 0.15]").replace("[-30, 30]", "[0, 90]").replace("clearance = 0.1\n", "")

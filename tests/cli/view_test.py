@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""view: one page with the layers of an EXR file, packed as half floats."""
+"""view: one page with the layers of an EXR file, packed as half floats, or with the patches of a solution."""
 import base64
 import json
 import math
@@ -48,6 +48,45 @@ class View(program.Case):
         self.assertIn('data-ready="picture"', shown)
         self.assertRegex(shown, r'<output id="stops">[0-9.]+ cd/m²</output>')
         self.assertEqual(re.findall(r"<option[^>]*>([^<]*)</option>", shown), ["picture", "Z"])
+
+    def solution_page(self):
+        self.write("ball.toml", program.BALL)
+        self.done("solve", "ball.toml", "-o", "ball.h5", "-q", "--set", "quality.patch_edge=0.5")
+        self.done("view", "ball.h5", "-q")
+        return (self.folder / "ball.html").read_text(encoding="utf-8")
+
+    def test_a_solution_is_a_page_with_its_patches(self):
+        """The blobs are the file's numbers: corners as they are, luminances of the sum over light groups."""
+        try:
+            import h5py
+        except ImportError:
+            self.skipTest("there is no h5py")
+        page = self.solution_page()
+        self.assertNotIn("http://", page.replace("http-equiv", ""))
+        blobs = {k: zlib.decompress(base64.b64decode(text)) for k, text in re.findall(r'<script type="text/plain" id="(b\d+)">([^<]*)<', page)}
+        data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.S)[1])
+        with h5py.File(self.folder / "ball.h5") as file:
+            self.assertEqual(blobs[data["corners"]], file["corners"][:].tobytes())
+            self.assertEqual(blobs[data["object"]], file["object"][:].astype("<u4").tobytes())
+            total = file["radiosity"][:].astype(float).sum(axis=1) @ (0.2126, 0.7152, 0.0722)
+        layers = {layer["name"]: layer for layer in data["layers"]}
+        self.assertEqual(layers["radiosity"]["unit"], "lm/m²")
+        for name, factor in (("radiosity", 1), ("luminance", 1 / math.pi)):
+            values = struct.unpack(f"<{len(total)}f", blobs[layers[name]["data"]])
+            for value, expected in zip(values, total):
+                self.assertAlmostEqual(value, factor * expected, delta=1e-5 * factor * expected + 1e-12)
+        self.assertEqual({name for name in layers if name.startswith("radiosity by")}, {"radiosity by lamp", "radiosity by sun"})
+        self.write("not.h5", "no solution")
+        self.says(self.refused("view", "not.h5"), "not.h5")
+
+    @unittest.skipUnless(shutil.which("chromium"), "there is no chromium")
+    def test_a_browser_turns_a_solution(self):
+        self.solution_page()
+        shown = subprocess.run(["chromium", "--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+                                "--virtual-time-budget=10000", "--dump-dom", f"--user-data-dir={self.folder / 'profile'}",
+                                (self.folder / "ball.html").as_uri()], capture_output=True, text=True, timeout=120).stdout
+        self.assertIn('data-ready="radiosity"', shown)
+        self.assertRegex(shown, r'<output id="stops">[0-9.e+]+ lm/m²</output>')
 
     def test_the_page_has_the_values(self):
         self.write("ball.toml", program.BALL)

@@ -163,13 +163,23 @@ TEST(TargetView, BlackBacksAreCountedWhereASurfaceHasOneSide) {
 TEST(TargetView, MotionIsThatOfTheMiddleAcrossThePicture) {
   const auto motion = [](const Vec3& velocity) {
     auto builder = tests::plate_on_ground(0.4, 0.6);
-    builder.scene.objects[1].velocity_m_s = velocity;
+    builder.scene.objects[1].motion.velocity_m_s = velocity;
     return only_target(builder.scene, tests::above(2.0, 2.0), 32).motion_px_s;
   };
   EXPECT_NEAR(motion({0.5, 0, 0})[0], 8.0, 1e-9);
   EXPECT_NEAR(motion({0.5, 0, 0})[1], 0.0, 1e-9);
   EXPECT_NEAR(motion({0, 0.5, 0})[1], -8.0, 1e-9);
   EXPECT_NEAR(std::hypot(motion({0, 0, 3})[0], motion({0, 0, 3})[1]), 0.0, 1e-9);
+  // A camera that moves the other way shows the same; one that moves along shows a still target.
+  const auto from = [](const Vec3& camera_velocity, const Vec3& velocity) {
+    auto builder = tests::plate_on_ground(0.4, 0.6);
+    builder.scene.objects[1].motion.velocity_m_s = velocity;
+    scenes::Camera camera = tests::above(2.0, 2.0);
+    camera.motion.velocity_m_s = camera_velocity;
+    return only_target(builder.scene, camera, 32).motion_px_s;
+  };
+  EXPECT_NEAR(from({-0.5, 0, 0}, {0, 0, 0})[0], 8.0, 1e-6);
+  EXPECT_NEAR(from({0.5, 0, 0}, {0.5, 0, 0})[0], 0.0, 1e-6);
 }
 
 TEST(TargetView, PictureWithoutObjectsIsRefused) {
