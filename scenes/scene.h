@@ -20,6 +20,8 @@
 
 namespace earthshine::scenes {
 
+struct FaceParts;  // scenes/health/coincident.h
+
 class Texture;            // scenes/texture/texture.h
 struct TextureTransform;  // of texture coordinates
 
@@ -331,6 +333,8 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Object> objects;
   std::vector<FacePair> coincident;  // ascending, a < b
+  // Of the triangles; null if no object has a velocity or spin, which change `coincident`.
+  std::shared_ptr<const FaceParts> face_parts;
   std::vector<Lamp> lamps;
   std::vector<Area> areas;
   std::optional<Sun> sun;

@@ -186,6 +186,7 @@ LiveScene::LiveScene(const SceneInput& input, const Common& common)
   cameras_ = scene_.loaded.scene.cameras;
   lamps_ = scene_.loaded.scene.lamps;
   movables_ = movables();
+  description_ = describe();
 }
 
 std::vector<LiveScene::Movable> LiveScene::movables() const {
@@ -228,7 +229,7 @@ std::vector<LiveScene::Movable> LiveScene::movables() const {
   return found;
 }
 
-Json LiveScene::describe() {
+Json LiveScene::describe() const {
   Json cameras = Json::array(), movables = Json::array();
   for (const scenes::Camera& camera : cameras_) {
     cameras.push_back({{"name", camera.name},
@@ -292,6 +293,7 @@ void LiveScene::apply(const LiveRequest& request) {
     read_set_ = request.set;
     cameras_ = scene_.loaded.scene.cameras;
     lamps_ = scene_.loaded.scene.lamps;
+    movables_ = movables();  // the file may have changed
   }
   const auto found =
       std::ranges::find(scene_.loaded.scene.cameras, request.camera, &scenes::Camera::name);
@@ -307,7 +309,8 @@ void LiveScene::apply(const LiveRequest& request) {
 
 base::Image LiveScene::at_once(const RenderCall& call, const scenes::Camera& camera,
                                const Size& size, Json& head) {
-  const bool same_light = light_ && light_overrides_ == scene_.overrides && !lamps_moved_;
+  const bool same_light =
+      light_ && light_->solved && light_overrides_ == scene_.overrides && !lamps_moved_;
   if (same_light) {
     head["kind"] = "patches";
     return raytrace::preview(scene_.loaded.world(*scene_.query), light_->solution,

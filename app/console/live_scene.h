@@ -37,8 +37,8 @@ class LiveScene {
  public:
   LiveScene(const SceneInput& input, const Common& common);
 
-  // Cameras, and what can be moved: for the page.
-  [[nodiscard]] Json describe();
+  // Cameras, and what can be moved, as the scene was at the start: for the page.
+  [[nodiscard]] const Json& description() const { return description_; }
   // A head as JSON, its length in four bytes (little-endian) before it, and planes of R, G and B as
   // 32-bit floats. No value if a newer request came meanwhile. Throws base::Error.
   [[nodiscard]] std::optional<std::string> draw(const LiveRequest& request);
@@ -55,6 +55,7 @@ class LiveScene {
   };
   // Those of the scene's own file.
   [[nodiscard]] std::vector<Movable> movables() const;
+  [[nodiscard]] Json describe() const;
   void apply(const LiveRequest& request);
   // Moves lamps in the loaded scene and returns true if nothing else differs from it; level 0 need
   // not read the scene again for them.
@@ -73,6 +74,7 @@ class LiveScene {
   std::vector<scenes::Lamp> lamps_;      // }
   bool lamps_moved_ = false;             // since then
   std::vector<Movable> movables_;
+  Json description_;
   std::optional<Solved> light_;  // the latest, of `light_overrides_`
   std::vector<std::string> light_overrides_;
   std::size_t light_structures_ = 0;

@@ -55,6 +55,11 @@ class Server {
  public:
   Server(LiveScene& scene, std::string token) : scene_(scene), token_(std::move(token)) {
     server_.new_task_queue = [] { return new httplib::ThreadPool(most_connections); };
+    // Without SO_REUSEPORT, which the library sets: a second server on the port is refused.
+    server_.set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
     server_.set_payload_max_length(most_body_bytes);
     server_.set_read_timeout(patience_s);
     server_.set_keep_alive_timeout(patience_s);
@@ -116,7 +121,7 @@ class Server {
   [[nodiscard]] std::string page() {
     return page_of({"Live preview", std::string(console_style()) + std::string(live_style()),
                     live_body(), live_script(), live_script_hash(), true},
-                   scene_.describe(), {});
+                   scene_.description(), {});
   }
 
   void draw(const httplib::Request& request, httplib::Response& response) {

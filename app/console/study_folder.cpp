@@ -103,15 +103,26 @@ FinishedStudy finished_study(const std::string& folder, const std::vector<std::s
   } else {
     finished.study = study_of_results(results);
   }
-  finished.seed = results.settings.value("seed", finished.seed);
+  const auto seed = results.settings.find("seed");
+  if (seed == results.settings.end() || !seed->is_number_unsigned()) {
+    throw Error(Blame::Input, (fs::path(folder) / study_file).string(), "has no seed", {},
+                "Run the study again");
+  }
+  finished.seed = seed->get<std::uint64_t>();
   if (!cameras.empty()) finished.study.cameras = cameras;
   return finished;
 }
 
 void check_unchanged(const FinishedStudy& finished, const StudyPart& part) {
   const auto& provenance = finished.results.provenance;
-  const Json digests = Json::parse(provenance.value("scene_digest", ""), nullptr, false);
-  const Json before = digests.is_object() ? digests.value(part.id, Json::object()) : Json();
+  const auto text = provenance.find("scene_digest");
+  const Json digests = text != provenance.end() && text->is_string()
+                           ? Json::parse(text->get<std::string>(), nullptr, false)
+                           : Json();
+  const auto of_part = digests.find(part.id);
+  const Json before = digests.is_object() && of_part != digests.end() && of_part->is_object()
+                          ? *of_part
+                          : Json::object();
   const Json now = scene_cache_key(part.loaded);
   std::vector<std::string> changed;
   for (const auto& piece : radiosity::scene_parts(part.loaded.scene, part.loaded.groups)) {
@@ -119,6 +130,13 @@ void check_unchanged(const FinishedStudy& finished, const StudyPart& part) {
   }
   if (changed.empty() && before.value("lobes", Json()) != now["lobes"]) {
     changed.emplace_back("the materials");
+  }
+  const Json cameras = before.value("cameras", Json());
+  for (const StudyCamera& camera : part.cameras) {
+    const Json key = camera_digest(camera);
+    const auto found = cameras.find(camera.camera->name);
+    if (found != cameras.end() && *found == key) continue;
+    changed.push_back("camera " + camera.camera->name);
   }
   if (changed.empty()) return;
   throw Error(Blame::Input, part.path,

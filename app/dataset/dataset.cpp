@@ -91,6 +91,12 @@ class Folder {
   [[nodiscard]] fs::path mask(const char* room, std::size_t image, std::size_t target) const {
     return path_ / "train/000000" / room / fmt::format("{:06}_{:06}.png", image, target);
   }
+  // scene_camera, scene_gt, scene_gt_info, annotations.
+  [[nodiscard]] std::vector<fs::path> lists() const {
+    const fs::path bop = path_ / "train/000000";
+    return {bop / "scene_camera.json", bop / "scene_gt.json", bop / "scene_gt_info.json",
+            path_ / "annotations.json"};
+  }
   [[nodiscard]] const fs::path& path() const { return path_; }
 
  private:
@@ -129,13 +135,32 @@ class DataSet {
   }
 
   [[nodiscard]] const Recipe& recipe() const { return recipe_; }
-  [[nodiscard]] bool is_done(std::size_t image) const { return !labels(image).is_null(); }
+  [[nodiscard]] bool is_done(std::size_t image) const {
+    return !labels(image).is_null() && has_pictures(image);
+  }
+  // Removes the lists over all images, which a new image makes wrong.
+  void drop_lists() const {
+    for (const fs::path& list : folder_.lists()) fs::remove(list);
+  }
   // Returns whether the picture has its error.
   bool make(std::size_t image);
   // Writes the lists over all images; false where images are missing.
   bool finish() const;
 
  private:
+  [[nodiscard]] bool has_pictures(std::size_t image) const {
+    std::vector<fs::path> files = {folder_.layers(image), folder_.bop("rgb", image),
+                                   folder_.bop("depth", image)};
+    for (std::size_t target = 0; target < recipe_.targets.size(); ++target) {
+      for (const char* room : {"mask", "mask_visib"}) {
+        files.push_back(folder_.mask(room, image, target));
+      }
+    }
+    return std::ranges::all_of(files, [](const fs::path& file) {
+      std::error_code missing;
+      return fs::file_size(file, missing) > 0 && !missing;
+    });
+  }
   // Targets that move stand in the axes of their models.
   [[nodiscard]] std::vector<std::string> model_overrides() const {
     std::vector<std::string> overrides = recipe_.overrides;
@@ -358,11 +383,11 @@ bool DataSet::finish() const {
     }
     coco["categories"].push_back(category);
   }
-  const fs::path bop = folder_.path() / "train/000000";
-  base::write_text(bop / "scene_camera.json", dump_lines(cameras));
-  base::write_text(bop / "scene_gt.json", dump_lines(poses));
-  base::write_text(bop / "scene_gt_info.json", dump_lines(facts));
-  base::write_text(folder_.path() / "annotations.json", dump_lines(coco));
+  const std::vector<fs::path> lists = folder_.lists();
+  const Json* contents[] = {&cameras, &poses, &facts, &coco};
+  for (std::size_t k = 0; k < lists.size(); ++k) {
+    base::write_text(lists[k], dump_lines(*contents[k]));
+  }
   return true;
 }
 
@@ -377,7 +402,9 @@ void run(const DatasetCall& call, const Common& common) {
     for (std::size_t k = 0; k < total; ++k) {
       report(k, total);
       const std::size_t image = numbers.first + k;
-      if (!set.is_done(image) && !set.make(image)) noisy.push_back(image);
+      if (set.is_done(image)) continue;
+      set.drop_lists();
+      if (!set.make(image)) noisy.push_back(image);
     }
   } catch (const Interrupt::Left&) {
     throw base::Error(base::Blame::Work, "dataset", "interrupted", {},

@@ -201,13 +201,15 @@ Varied read_varied(const TomlNode& node) {
 // The labels follow the poses that [[target]] draws.
 void check_varied(const TomlNode& node, const Varied& varied,
                   const std::vector<DrawnTarget>& targets) {
+  const TableReader table(node, "[[vary]]", vary_keys);
+  if (varied.key == "unit") table.fail("key", "sets the unit", "[[target]] reads the scene file's");
   for (const DrawnTarget& target : targets) {
     const std::string own = fmt::format("object.{}.", target.name);
-    for (const char* key : {"translate", "rotate", "scale", "target", "joint"}) {
-      if (varied.key != own + key) continue;
-      TableReader(node, "[[vary]]", vary_keys)
-          .fail("key", "sets the pose of a target", "[[target]] draws it, with low and high");
-    }
+    if (!varied.key.starts_with(own)) continue;
+    const std::string key = varied.key.substr(own.size());
+    if (key == "material" || key == "velocity" || key == "spin" || key == "spin_about") continue;
+    table.fail("key", "sets the pose or the shape of a target",
+               "[[target]] draws its pose, with low and high; its shape is that of the model");
   }
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "app/console.h"
@@ -12,6 +13,7 @@
 #include "base/numbers/random.h"
 #include "raytrace/frame/first_hit.h"
 #include "raytrace/frame/mean_frame.h"
+#include "scenes/health/coincident.h"
 #include "scenes/triangle_point.h"
 #include "scenes/view/motion.h"
 
@@ -117,7 +119,7 @@ raytrace::Frame mean_of_instants(const RenderContext& context, const scenes::Cam
   own.error = std::min(most_error, error * std::sqrt(of_row));
   own.gather_rays = std::max(1, static_cast<int>(std::ceil(options.gather_rays / of_row)));
   own.camera_samples = std::max(2, static_cast<int>(std::ceil(options.camera_samples / of_row)));
-  own.time_limit_s = options.time_limit_s / instants;
+  const auto start = std::chrono::steady_clock::now();
   own.initial_sampling_pixels = window.pixel_count();
   raytrace::MeanFrame mean(window);
   for (int k = 0; k < instants; ++k) {
@@ -132,6 +134,7 @@ raytrace::Frame mean_of_instants(const RenderContext& context, const scenes::Cam
     own.seed = base::mix64(options.seed ^ base::mix64(static_cast<std::uint64_t>(k))) >> 11U;
     LoadedScene moved = context.loaded;
     scenes::move_surfaces_and_lamps(moved.scene, from + 0.5 * length);
+    scenes::find_coincident_faces_again(moved.scene);
     if (moved.scene.quality.error) {
       moved.scene.quality.error =
           std::min(most_error, *moved.scene.quality.error * std::sqrt(of_row));
@@ -146,9 +149,15 @@ raytrace::Frame mean_of_instants(const RenderContext& context, const scenes::Cam
     StageTimes within;  // of the picture
     Common common = context.common;
     common.seed = own.seed;
-    const Solved light =
-        find_light({context.call, common, moved, query, {}, Interrupt::asked}, within);
-    const RenderContext instant{context.call, common, moved, query, light};
+    // Of the time that is left an equal share, half of it for the solution.
+    RenderCall call = context.call;
+    if (options.time_limit_s > 0.0) {
+      const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;
+      own.time_limit_s = std::max(1e-3, 0.5 * (options.time_limit_s - gone.count()) / (instants - k));
+      call.time_limit_s = own.time_limit_s;
+    }
+    const Solved light = find_light({call, common, moved, query, {}, Interrupt::asked}, within);
+    const RenderContext instant{call, common, moved, query, light};
     mean.add(draw_frame(instant, open, own), shares);
     if (options.stop && options.stop()) break;
   }

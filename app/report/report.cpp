@@ -46,9 +46,12 @@ Command add_report(CLI::App& program) {
   parser->add_flag("--plain", call->plain, "Without the script: no plots, no sliders");
   return {parser, [call](const Common& common) {
             const fs::path folder = call->folder;
-            const StudyResults study = read_study(folder);
-            check_outputs({(folder / report_file).string()}, {(folder / study_file).string()});
-            write_report(folder, study, {call->plain, common.quiet});
+            const std::string results = (folder / study_file).string();
+            std::error_code ignored;
+            if (fs::exists(results, ignored)) {
+              check_outputs({(folder / report_file).string()}, {results});
+            }
+            write_report(folder, read_study(folder), {call->plain, common.quiet});
           }};
 }
 

@@ -9,6 +9,7 @@
 
 #include "app/call/render_call.h"
 #include "app/console.h"
+#include "app/parts/result_cache.h"
 #include "base/error.h"
 #include "base/input/input_file.h"
 #include "raytrace/camera/camera.h"
@@ -328,6 +329,15 @@ void fill_part(const studies::StudyFile& study, const Common& common, StudyWay w
 }
 
 }  // namespace
+
+std::string camera_digest(const StudyCamera& camera) {
+  Json all = {camera_cache_key(*camera.camera), camera.columns, camera.rows};
+  if (camera.cctv) {
+    all.push_back(settings_json(camera.cctv->chain.camera));
+    all.push_back(monitor_json(camera.cctv->chain.monitor));
+  }
+  return digest_of(all);
+}
 
 StudyParts prepare_parts(const studies::StudyFile& study, std::size_t index, const Common& common) {
   StudyParts parts;

@@ -27,6 +27,9 @@ struct StudyCamera {
   std::optional<CctvSetup> cctv;
 };
 
+// Of pose, lens, size and CCTV.
+[[nodiscard]] std::string camera_digest(const StudyCamera& camera);
+
 // One scene, or one pose of a scene whose joints move. Not movable: its members refer to each other.
 struct StudyPart {
   std::string id;         // "s0", "s1", ...; of a later pose of its joints "s0-p1", ...

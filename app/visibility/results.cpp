@@ -147,6 +147,9 @@ StudyResults begin_results(const studies::StudyFile& study,
           {part->id, part->loaded.scene.name, part->path, {}, orbit_entry(part->loaded.scene)});
     }
     digests[part->id] = scene_cache_key(part->loaded);
+    for (const StudyCamera& camera : part->cameras) {
+      digests[part->id]["cameras"][camera.camera->name] = camera_digest(camera);
+    }
     for (const std::string& name : part->targets) {
       if (target_number(results, name) == results.targets.size()) results.targets.push_back(name);
     }

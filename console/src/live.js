@@ -42,10 +42,12 @@ const dolly = (factor) => {
   at.position = add(at.look_at, add(at.position, at.look_at, -1), factor);
 };
 
+// A camera that nobody has moved stays with its joint.
 const requestOf = (level) => {
-  const { columns, rows, name } = data.cameras[state.camera], most = Math.max(columns, rows);
+  const start = data.cameras[state.camera], { columns, rows, name } = start, most = Math.max(columns, rows), at = view();
+  const isMoved = Object.keys(at).some((key) => String(at[key]) !== String(start[key]));
   return {
-    camera: name, level, view: view(), set: state.set,
+    camera: name, level, view: isMoved ? at : undefined, set: state.set,
     columns: Math.max(16, Math.round((size * columns) / most)), rows: Math.max(16, Math.round((size * rows) / most)),
   };
 };

@@ -81,9 +81,9 @@ class SurfaceSearch {
     return [this, &stage](const std::string& name) -> Progress {
       return [this, of_pass = stage(name)](std::size_t done, std::size_t total) {
         if (!of_pass || total == 0) return;
-        constexpr std::size_t fine = 1000;  // parts of a pass
-        const std::size_t before = fine * result_.steps.size();
-        of_pass(before + fine * done / total, before + fine * passes_to_go());
+        const std::size_t before = parts_of_a_pass * result_.steps.size();
+        of_pass(before + parts_of_a_pass * done / total,
+                before + parts_of_a_pass * passes_to_go());
       };
     };
   }

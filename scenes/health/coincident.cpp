@@ -296,4 +296,11 @@ void find_coincident_faces(Scene& scene, const FaceParts& parts) {
   Coincidence(scene, parts).find();
 }
 
+void find_coincident_faces_again(Scene& scene) {
+  std::vector<std::string> said = scene.warnings;
+  scene.coincident.clear();
+  find_coincident_faces(scene, *scene.face_parts);
+  scene.warnings = std::move(said);
+}
+
 }  // namespace earthshine::scenes

@@ -15,6 +15,7 @@
 #include "scenes/surface_texture.h"
 #include "scenes/text/toml_file.h"
 #include "scenes/triangle_point.h"
+#include "scenes/view/motion.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -190,6 +191,9 @@ Scene scene_of(TomlNode tree, const std::filesystem::path& path,
   lift_lamps(scene);
   add_instances(parts, scene);
   find_coincident_faces(scene, parts);
+  if (surfaces_or_lamps_move(scene)) {
+    scene.face_parts = std::make_shared<const FaceParts>(std::move(parts));
+  }
   name_small_objects(scene);
   return scene;
 }

@@ -244,9 +244,11 @@ class Dataset(program.Case):
             self.write("set.toml", DATASET.replace(old, new, 1))
             self.says(self.refused("dataset", "set.toml", "-o", "out"), "set.toml", words)
         vary = '[[vary]]\nkey = "{}"\nuniform = [1, 2]\n'
-        for key in ("object.cube.translate", "object.cube.scale", "object.cube.target"):
-            self.write("set.toml", DATASET + vary.format(key))
-            self.says(self.refused("dataset", "set.toml", "-o", "out"), "set.toml", "pose of a target")
+        for key in ("translate", "scale", "target", "min"):
+            self.write("set.toml", DATASET + vary.format("object.cube." + key))
+            self.says(self.refused("dataset", "set.toml", "-o", "out"), "set.toml", "the pose or the shape of a target")
+        self.write("set.toml", DATASET + vary.format("unit"))
+        self.says(self.refused("dataset", "set.toml", "-o", "out"), "set.toml", "sets the unit")
         self.write("set.toml", DATASET.replace("seed = 7", 'seed = 7\nset = ["unit=m"]'))
         self.says(self.refused("dataset", "set.toml", "-o", "out"), "set.toml", "sets the unit")
         self.write("set.toml", DATASET)
@@ -261,11 +263,23 @@ class Dataset(program.Case):
         (self.folder / "sub").mkdir()
         self.write("sub/set.toml", SCENE)
         self.write("set.toml", DATASET.replace("a.toml", "sub/set.toml"))
-        self.done("dataset", "set.toml", "-o", "out", "-q", "--images", "0")
+        self.done("dataset", "set.toml", "-o", "out", "-q")
+        lists = [self.folder / "out/train/000000/scene_gt.json", self.folder / "out/annotations.json"]
         before = (self.folder / "out/images/000000.json").read_text()
         self.write("sub/set.toml", SCENE.replace("diffuse = 0.5", "diffuse = 0.6"))
         self.done("dataset", "set.toml", "-o", "out", "-q", "--images", "0")
         self.assertNotEqual((self.folder / "out/images/000000.json").read_text(), before)
+        self.assertFalse(any(path.exists() for path in lists))  # the others are of the scene before
+
+    def test_a_lost_picture_is_drawn_again(self):
+        self.write("set.toml", DATASET)
+        self.done("dataset", "set.toml", "-o", "out", "-q", "--images", "0-1")
+        pictures = [self.folder / "out/train/000000/rgb/000000.png", self.folder / "out/images/000001.exr"]
+        before = [path.read_bytes() for path in pictures]
+        pictures[0].unlink()
+        pictures[1].write_bytes(b"")
+        self.done("dataset", "set.toml", "-o", "out", "-q", "--images", "0-1")
+        self.assertEqual([path.read_bytes() for path in pictures], before)
 
 
 if __name__ == "__main__":

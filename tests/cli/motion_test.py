@@ -100,6 +100,24 @@ class Motion(program.Case):
             self.assertAlmostEqual(row[30], FULL, delta=1)
             self.assertAlmostEqual(row[33], 0, delta=1)
 
+    def test_a_moving_face_hides_the_face_that_it_lies_on(self):
+        """A black floor in the plane of the panel: an emitter is in front of it, at each instant where it is then. The edge
+        goes from 16 to 48 px."""
+        floor = """
+[[material]]
+name = "black"
+[[object]]
+name = "floor"
+shape = "quad"
+corners = [[-4, -4, 0], [4, -4, 0], [4, 4, 0], [-4, 4, 0]]
+material = "black"
+"""
+        row = self.rows(self.picture(object="velocity = [1, 0, 0]", camera="exposure_s = 1", more=floor,
+                                     quality=("--set", "quality.camera_samples=256", "--no-error")))[32]
+        self.assertAlmostEqual(row[8], FULL, delta=1)
+        self.assertAlmostEqual(row[56], 0, delta=1)
+        self.assertAlmostEqual(row[24], 0.75 * FULL, delta=0.05 * FULL)
+
     def test_a_rolling_shutter_shears(self):
         """32 px/s and 1/256 s a row: an eighth of a pixel a row, the middle of the picture in place. An edge is a share of
         a pixel with 64 samples: a standard error of at most 1/16 px, four of them 1/4; the mean over rows is

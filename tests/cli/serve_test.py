@@ -77,6 +77,23 @@ class Serve(tiny_bay.Case):
         self.assertEqual(moved["kind"], "samples")  # the light is not solved yet
         self.assertEqual(self.picture()[1], patches)  # moved back
 
+    def test_a_scene_that_is_edited_meanwhile(self):
+        """The lamps are those of the file that was read last, by name."""
+        self.picture(set={"light.right.position": [-1.5, 0, 3]})
+        text = (self.folder / "bay.toml").read_text()
+        start = text.index("[[light]]", text.index("[[light]]") + 1)
+        end = text.find("[[", start + 2)
+        self.write("bay.toml", text[:start] + (text[end:] if end > 0 else ""))
+        self.picture(set={"object.floor.translate": [0, 0, 0.01]})  # reads the file again
+        status, words = self.ask(body=json.dumps({"camera": "A", "set": {"light.right.position": [-1.5, 0, 4]}}))
+        self.assertEqual(status, 400, words)
+        self.says(words.decode(), "light.right.position", "not in the scene")
+
+    def test_a_port_in_use(self):
+        run = self.run_program("console", "bay.toml", "--serve", "--port", self.port)
+        self.assertEqual(run.returncode, 2, run.stdout)
+        self.says(run.stderr, "--port", self.port, "not free")
+
     def test_a_level_is_the_picture_of_render(self):
         # Size of level 1: half the columns and rows.
         _, planes = self.picture(level=1, columns=48, rows=48, set={"light.left.position": [1.5, 0, 1]})

@@ -243,8 +243,8 @@ SteeredSolution within(double limit_s, double pass_s) {
   const auto stage = [&](const std::string& name) -> Progress {
     const bool whole = name.find(" patches") != std::string::npos && !name.starts_with("shadows") &&
                        !name.starts_with("uneven");
-    return [&now, step = whole ? pass_s : 0.0](std::size_t done, std::size_t total) {
-      if (done == total) now += step;
+    return [&now, step = whole ? pass_s : 0.0](std::size_t done, std::size_t) {
+      if (done > 0 && done % parts_of_a_pass == 0) now += step;
     };
   };
   return reach_surfaces(prepared, wanted, 1, {}, stage);
