@@ -170,8 +170,10 @@ def main():
         return SKIPPED
     with tempfile.TemporaryDirectory() as name:
         bench, draw = Bench(program, pathlib.Path(name)), random.Random(SEED)
-        # Each built-in camera has its own monitor; the scene's small one would replace it.
-        (bench.folder / "bay.toml").write_text(tiny_bay.BAY.replace(tiny_bay.SMALL_MONITOR, "") + TARGETS, encoding="utf-8")
+        # Each built-in camera has its own monitor; the scene's small one would replace it. At this error a study needs no
+        # samples for its settings, so that page and study have the same picture.
+        scene = tiny_bay.BAY.replace(tiny_bay.SMALL_MONITOR, "").replace("[quality]", "[quality]\nerror = 1")
+        (bench.folder / "bay.toml").write_text(scene + TARGETS, encoding="utf-8")
         bench.run("console", "bay.toml", "-o", "console.html", "--layers", "layers", "-q")
         bench.run("console", "bay.toml", "-o", "orbit.html", "--positions", str(len(POSITIONS)), "-q")
         presets = page_data(bench.folder / "orbit.html")["presets"]
