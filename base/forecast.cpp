@@ -9,6 +9,8 @@ namespace {
 constexpr double least_s = 1e-3;
 // A stage past its expected time, without steady reports, is taken to be halfway.
 constexpr double late = 2.0;
+// Share of a stage from which on its reports alone predict it: the first ones are rough.
+constexpr double trusted = 0.2;
 // The end is shown by the result.
 constexpr double most_shown = 0.99;
 
@@ -58,7 +60,9 @@ double Forecast::seconds_of_current(double now, double slowdown) const {
   const double gone = std::max(least_s, now - began_);
   const double seconds = std::max(expected(current_, slowdown), late * gone);
   if (!current_.steady || total_ <= 1 || done_ == 0) return seconds;
-  return gone * static_cast<double>(total_) / static_cast<double>(done_);
+  const double done = static_cast<double>(done_) / static_cast<double>(total_);
+  const double trust = std::min(1.0, done / trusted);
+  return trust * gone / done + (1.0 - trust) * seconds;
 }
 
 Forecast::State Forecast::at(double now, double slowdown, double most) {

@@ -2,6 +2,7 @@
 // How far a call has come and how long it still takes, from its stages.
 //
 //   remaining = rest of the stage under way + expected seconds of the stages to come
+//   rest of a stage: by its reports, mixed with the expected seconds up to a fifth of it
 //   share     = elapsed / (elapsed + remaining), never less than it was before
 //
 // Expected seconds of a kind of stage are corrected by the finished stages of that kind. The caller

@@ -6,13 +6,17 @@
 namespace earthshine::base {
 namespace {
 
+// From a fifth of the stage on. Before, in proportion: at a tenth half of 20 s and half of the 100 s
+// that were expected.
 TEST(Forecast, StepsOfASteadyStageGiveTheRestExactly) {
   Forecast forecast;
   forecast.begin({"solve", 100.0}, 0.0);  // 100 s were expected, and it takes 20 s
   forecast.advance(1, 10);
-  const Forecast::State state = forecast.at(2.0);
-  EXPECT_NEAR(state.share, 0.1, 1e-12);
-  EXPECT_NEAR(state.seconds_to_go, 18.0, 1e-12);
+  EXPECT_NEAR(forecast.at(2.0).seconds_to_go, 60.0 - 2.0, 1e-12);
+  forecast.advance(2, 10);
+  const Forecast::State state = forecast.at(4.0);
+  EXPECT_NEAR(state.share, 0.2, 1e-12);
+  EXPECT_NEAR(state.seconds_to_go, 16.0, 1e-12);
 }
 
 TEST(Forecast, FinishedStagesCorrectThoseOfTheirKind) {
