@@ -29,18 +29,17 @@ struct Law {
   Work work;
   const char* kind;
   double fixed, each;
-  bool steady;
 };
-constexpr std::array<Law, 10> laws = {{{Work::Read, "read", 0.2, 0.0, true},
-                                       {Work::Pilot, "pilot", 1.0, 2.0, true},
-                                       {Work::Solve, "solve", 0.2, 2e-5, true},
-                                       {Work::StudySolve, "study solve", 0.5, 2e-5, true},
-                                       {Work::Picture, "picture", 0.3, 7e-5, true},
-                                       {Work::StudyPicture, "study picture", 1.0, 2e-4, true},
-                                       {Work::Paths, "paths", 0.1, 1e-6, true},
-                                       {Work::Conditions, "conditions", 0.5, 1e-6, true},
-                                       {Work::Surfaces, "surfaces", 1.0, 1e-4, true},
-                                       {Work::Other, "other", 0.5, 0.0, true}}};
+constexpr std::array<Law, 10> laws = {{{Work::Read, "read", 0.2, 0.0},
+                                       {Work::Pilot, "pilot", 1.0, 2.0},
+                                       {Work::Solve, "solve", 0.2, 2e-5},
+                                       {Work::StudySolve, "study solve", 0.5, 2e-5},
+                                       {Work::Picture, "picture", 0.3, 7e-5},
+                                       {Work::StudyPicture, "study picture", 1.0, 2e-4},
+                                       {Work::Paths, "paths", 0.1, 1e-6},
+                                       {Work::Conditions, "conditions", 0.5, 1e-6},
+                                       {Work::Surfaces, "surfaces", 1.0, 1e-4},
+                                       {Work::Other, "other", 0.5, 0.0}}};
 
 const Law& law_of(Work work) {
   return *std::find_if(laws.begin(), laws.end(),
@@ -49,7 +48,7 @@ const Law& law_of(Work work) {
 
 base::Forecast::Stage stage_of(Work work, double units) {
   const Law& law = law_of(work);
-  return {law.kind, (law.fixed + law.each * units) / base::available_threads(), law.steady};
+  return {law.kind, (law.fixed + law.each * units) / base::available_threads()};
 }
 
 // Whole seconds: it is an estimate.
@@ -110,7 +109,7 @@ void Progress::expect(Work work, double units) {
 void Progress::expect_rest(double seconds) {
   const std::lock_guard lock(mutex_);
   forecast_.drop_all();
-  if (seconds > 0.0) forecast_.expect({"", seconds, true});
+  if (seconds > 0.0) forecast_.expect({"", seconds});
   is_planned_ = true;
 }
 

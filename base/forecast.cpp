@@ -7,7 +7,8 @@ namespace earthshine::base {
 namespace {
 
 constexpr double least_s = 1e-3;
-// A stage past its expected time, without steady reports, is taken to be halfway.
+// A stage past its expected time, without reports or with more work than they knew of, is taken to
+// be halfway.
 constexpr double late = 2.0;
 // Share of a stage from which on its reports alone predict it: the first ones are rough.
 constexpr double trusted = 0.2;
@@ -59,7 +60,7 @@ double Forecast::expected(const Stage& stage, double slowdown) const {
 double Forecast::seconds_of_current(double now, double slowdown) const {
   const double gone = std::max(least_s, now - began_);
   const double seconds = std::max(expected(current_, slowdown), late * gone);
-  if (!current_.steady || total_ <= 1 || done_ == 0) return seconds;
+  if (total_ <= 1 || done_ == 0 || done_ == total_) return seconds;
   const double done = static_cast<double>(done_) / static_cast<double>(total_);
   const double trust = std::min(1.0, done / trusted);
   return trust * gone / done + (1.0 - trust) * seconds;

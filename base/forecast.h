@@ -23,9 +23,6 @@ class Forecast {
     // Stages of one kind take seconds in proportion to those expected; "": as many as expected.
     std::string kind;
     double seconds = 0.0;  // expected
-    // Whether its reports are in proportion to time; else they are ignored: a picture to an error
-    // knows only the samples of the round under way.
-    bool steady = true;
   };
   struct State {
     double share = 0.0, seconds_to_go = 0.0;

@@ -96,15 +96,13 @@ app::Common common_of(const Request& request) {
   return common;
 }
 
-Json three(const Vec3& v) { return {v.x, v.y, v.z}; }
-
 Json json_of(const scenes::Camera& camera) {
   const raytrace::CameraMatrices matrices =
       raytrace::camera_matrices(raytrace::make_camera_model(camera, camera.columns, camera.rows));
   return {{"name", camera.name},
-          {"position_m", three(camera.position)},
-          {"look_at_m", three(camera.look_at)},
-          {"up", three(camera.up)},
+          {"position_m", app::to_json(camera.position)},
+          {"look_at_m", app::to_json(camera.look_at)},
+          {"up", app::to_json(camera.up)},
           {"fov_deg", camera.fov_deg},
           {"resolution", {camera.columns, camera.rows}},
           {"focus", camera.focus_m},
@@ -120,8 +118,8 @@ Json json_of(const scenes::Camera& camera) {
 Json json_of(const scenes::Lamp& lamp) {
   return {{"name", lamp.name},
           {"group", lamp.group},
-          {"position_m", three(lamp.position)},
-          {"axis", three(lamp.axis)},
+          {"position_m", app::to_json(lamp.position)},
+          {"axis", app::to_json(lamp.axis)},
           {"intensity_cd", app::to_json(lamp.intensity_cd)},
           {"exitance_lm_m2", app::to_json(lamp.exitance)},
           {"illuminance_lx", app::to_json(lamp.illuminance_lx)}};
@@ -144,10 +142,10 @@ Json json_of(const scenes::Scene& scene, const scenes::Object& object) {
   const auto& [low, high] = scenes::bounds_of(scene, object);
   return {{"name", object.name},
           {"target", object.target},
-          {"velocity", three(object.motion.velocity_m_s)},
+          {"velocity", app::to_json(object.motion.velocity_m_s)},
           {"triangles", object.triangle_count},
           {"area_m2", object.area_m2},
-          {"bounds_m", {three(low), three(high)}},
+          {"bounds_m", {app::to_json(low), app::to_json(high)}},
           {"source", object.source}};
 }
 
@@ -198,12 +196,12 @@ std::string Session::describe() {
                {"triangles", scene.triangles.size()},
                {"warnings", state_->warnings}};
   if (scene.sun) {
-    json["sun"] = {{"direction", three(scene.sun->direction)},
+    json["sun"] = {{"direction", app::to_json(scene.sun->direction)},
                    {"illuminance", app::to_json(scene.sun->illuminance_lx)},
                    {"angular_radius_deg", scene.sun->angular_radius_deg}};
   }
   if (scene.earth) {
-    json["earth"] = {{"direction", three(scene.earth->direction)},
+    json["earth"] = {{"direction", app::to_json(scene.earth->direction)},
                      {"half_angle_deg", scene.earth->half_angle_deg},
                      {"altitude_km", scene.earth->altitude_m / 1000.0},
                      {"albedo", app::to_json(scene.earth->albedo)}};

@@ -31,7 +31,7 @@ void pass(base::Parcel& parcel, std::vector<Line>& lines) {
 
 }  // namespace
 
-void tell_report(const base::Shares& shares, SolveReport& report) {
+void broadcast_report(const base::Shares& shares, SolveReport& report) {
   shares.broadcast([&report](base::Parcel& parcel) {
     parcel.pass_all(report.shadow_rays, report.sources_cost, report.iterations, report.residual,
                     report.solver_error);
@@ -47,7 +47,7 @@ void broadcast_solution(const base::Shares& shares, Solution& solution) {
     values->resize(solution.patches.count() * solution.columns);
     shares.broadcast(values->data(), values->size());
   }
-  tell_report(shares, solution.report);
+  broadcast_report(shares, solution.report);
 }
 
 }  // namespace earthshine::radiosity

@@ -9,7 +9,7 @@ namespace earthshine::radiosity {
 
 // Of ranks that divide the form factors only the first one has the report on direct light and the
 // ledger: broadcasts them.
-void tell_report(const base::Shares& shares, SolveReport& report);
+void broadcast_report(const base::Shares& shares, SolveReport& report);
 
 // Also broadcasts the four values of each patch, if only the first rank has them. The others have
 // the patches and the rest of the report.

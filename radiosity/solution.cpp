@@ -316,7 +316,7 @@ Solution solve_keeping(const scenes::World& world, const SolveOptions& options, 
   for (std::size_t o = 0; o < object_backs.size(); ++o) {
     report.objects[o].back_share = object_backs[o];
   }
-  tell_report(factors.shares, report);
+  broadcast_report(factors.shares, report);
   watch.lap("ledger");
   return solution;
 }

@@ -90,10 +90,6 @@ CctvSetup cctv_of_preset(const std::string& name, const Common& common) {
                     degrade::did_you_mean(name, names));
 }
 
-bool remembers(const degrade::CctvCamera& camera) {
-  return camera.iris_rate != 1.0 || camera.iris_slew != 0.0 || camera.lag > 0.0;
-}
-
 degrade::Result run_chain(const CctvSetup& setup, const base::Image& radiance) {
   return degrade::degrade(radiance, setup.chain.camera, setup.chain.monitor, setup.chain.options);
 }

@@ -30,9 +30,6 @@ struct CctvSetup {
 // A built-in camera with its monitor. Throws base::Error (Input) for an unknown name.
 [[nodiscard]] CctvSetup cctv_of_preset(const std::string& name, const Common& common);
 
-// Whether a frame depends on earlier ones: by a slow iris, or by lag.
-[[nodiscard]] bool remembers(const degrade::CctvCamera& camera);
-
 [[nodiscard]] degrade::Result run_chain(const CctvSetup& setup, const base::Image& radiance);
 
 // The value of a setting; enumerators as words.

@@ -211,7 +211,7 @@ void run(const DegradeCall& call, const Common& common) {
     if (!common.quiet) note("  " + cctv_summary(setup, result));
   }
   if (!call.json) return;
-  print(dump(tape.size() == 1 && !reports.empty() ? reports.front() : Json{{"frames", reports}}));
+  print(dump(tape.size() == 1 ? reports.front() : Json{{"frames", reports}}));
 }
 
 }  // namespace

@@ -108,23 +108,6 @@ std::size_t count_of(const std::string& key) {
          "light.NAME.position, object.NAME.translate or joint.NAME.angle_deg");
 }
 
-// Finite numbers of a TOML value; empty for another value.
-std::vector<double> numbers_in(const scenes::TomlNode& node) {
-  if (const auto* whole = std::get_if<std::int64_t>(&node.value)) {
-    return {static_cast<double>(*whole)};
-  }
-  if (const auto* number = std::get_if<double>(&node.value)) return {*number};
-  std::vector<double> all;
-  if (const auto* items = std::get_if<scenes::TomlArray>(&node.value)) {
-    for (const scenes::TomlNode& item : *items) {
-      const std::vector<double> one = numbers_in(item);
-      if (one.size() != 1) return {};
-      all.push_back(one.front());
-    }
-  }
-  return all;
-}
-
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -145,8 +128,6 @@ std::string answer_of(const Json& head, const base::Image& image) {
   }
   return bytes;
 }
-
-Json three(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
@@ -204,7 +185,7 @@ std::vector<LiveScene::Movable> LiveScene::movables() const {
       // Without the key: objects and joints are at 0, a lamp without a position has none.
       if (text == nullptr || (value == nullptr && std::string_view(table) == "light")) continue;
       std::vector<double> numbers =
-          value ? numbers_in(value->node) : std::vector<double>(count, 0.0);
+          value ? scenes::numbers_of(value->node) : std::vector<double>(count, 0.0);
       if (numbers.size() != count) continue;
       Movable& one = found.emplace_back(fmt::format("{}.{}.{}", table, *text, key), numbers);
       const auto lamp = std::ranges::find(lamps_, *text, &scenes::Lamp::name);
@@ -218,7 +199,7 @@ std::vector<LiveScene::Movable> LiveScene::movables() const {
       if (!(glm::distance(unit_m * as_written, lamp->position) <= 1e-9 * unit_m)) continue;
       if (lamp->kind == scenes::LampKind::Spot) {
         const auto* aim = scenes::find_entry(keys, "aim");
-        const std::vector<double> at = aim ? numbers_in(aim->node) : std::vector<double>();
+        const std::vector<double> at = aim ? scenes::numbers_of(aim->node) : std::vector<double>();
         if (at.size() != 3) continue;
         one.aim_m = unit_m * Vec3(at[0], at[1], at[2]);
       }
@@ -233,9 +214,9 @@ Json LiveScene::describe() const {
   Json cameras = Json::array(), movables = Json::array();
   for (const scenes::Camera& camera : cameras_) {
     cameras.push_back({{"name", camera.name},
-                       {"position", three(camera.position)},
-                       {"look_at", three(camera.look_at)},
-                       {"up", three(camera.up)},
+                       {"position", to_json(camera.position)},
+                       {"look_at", to_json(camera.look_at)},
+                       {"up", to_json(camera.up)},
                        {"fov_deg", camera.fov_deg},
                        {"columns", camera.columns},
                        {"rows", camera.rows}});
@@ -333,15 +314,13 @@ base::Image LiveScene::at_once(const RenderCall& call, const scenes::Camera& cam
   return draw_frame(context, camera, picture_options(small, common_, scene_.loaded, camera)).image;
 }
 
-base::Image LiveScene::sampled(RenderCall& call, const scenes::Camera& camera, std::size_t level,
-                               Json& head) {
+base::Image LiveScene::sampled(RenderCall& call, const scenes::Camera& camera, Json& head) {
   StageTimes times;
   const Solved& light = scene_.light_for(call, common_, times);
   if (Interrupt::asked()) return {};
   light_ = light;
   light_overrides_ = scene_.overrides;
   light_structures_ = scene_.structures;
-  if (level == 0) return {};
   const RenderContext context{call, common_, scene_.loaded, *scene_.query, light};
   Drawn drawn = draw_picture(context, camera, times);
   head["kind"] = "samples";
@@ -370,7 +349,7 @@ std::optional<std::string> LiveScene::draw(const LiveRequest& request) {
   scene_.prepare(call, cameras, true, error);
   Json head = {{"level", request.level}, {"error", nullptr}};
   base::Image image = request.level == 0 ? at_once(call, *cameras.front(), request.size, head)
-                                         : sampled(call, *cameras.front(), request.level, head);
+                                         : sampled(call, *cameras.front(), head);
   if (Interrupt::asked() || image.channels.empty()) return std::nullopt;
   head["columns"] = image.width;
   head["rows"] = image.height;

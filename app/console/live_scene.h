@@ -62,8 +62,7 @@ class LiveScene {
   [[nodiscard]] bool move_lamps(const LiveRequest& request);
   [[nodiscard]] base::Image at_once(const RenderCall& call, const scenes::Camera& camera,
                                     const Size& size, Json& head);
-  [[nodiscard]] base::Image sampled(RenderCall& call, const scenes::Camera& camera,
-                                    std::size_t level, Json& head);
+  [[nodiscard]] base::Image sampled(RenderCall& call, const scenes::Camera& camera, Json& head);
 
   Common common_;
   std::vector<std::string> own_set_;

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 
 #include "app/output.h"
 #include "app/parts/result_cache.h"
@@ -55,13 +56,12 @@ studies::StudyFile study_of_results(const StudyResults& results) {
   return study;
 }
 
-// The condition's numbers of setting and place in the part.
-const ConditionEntry& entry_of(const StudyResults& results, const std::string& id) {
+std::size_t number_of_condition(const StudyResults& results, const std::string& id) {
   const auto found = std::ranges::find(results.conditions, id, &ConditionEntry::id);
   if (found == results.conditions.end()) {
     throw Error(Blame::Input, study_file, "has no condition " + id, {}, "Run the study again");
   }
-  return *found;
+  return static_cast<std::size_t>(found - results.conditions.begin());
 }
 
 Json factors_json(const StudyPart& part, std::size_t setting) {
@@ -156,16 +156,16 @@ Json study_json(const FinishedStudy& finished, const StudyPart& part) {
   }
   // By camera and target: a list of [verdict, reasons] with the places of the first setting first.
   Json judged = Json::object();
+  std::map<std::size_t, std::size_t> part_of;  // number in the results: in the part
   for (std::size_t k = 0; k < conditions.size(); ++k) {
-    const ConditionEntry& entry = entry_of(results, conditions[k].id);
-    const auto number = static_cast<std::size_t>(&entry - results.conditions.data());
-    for (const ResultEntry& result : results.results) {
-      if (result.condition != number) continue;
-      Json& list = judged[results.cameras[result.camera].name][results.targets[result.target]];
-      if (list.is_null()) list = Json::array();
-      while (list.size() < k) list.push_back(nullptr);
-      list.push_back({std::string(studies::word_of(result.sight.verdict)), result.why});
-    }
+    part_of[number_of_condition(results, conditions[k].id)] = k;
+  }
+  for (const ResultEntry& result : results.results) {
+    const auto condition = part_of.find(result.condition);
+    if (condition == part_of.end()) continue;
+    Json& list = judged[results.cameras[result.camera].name][results.targets[result.target]];
+    if (list.is_null()) list = Json::array_t(conditions.size());
+    list[condition->second] = {std::string(studies::word_of(result.sight.verdict)), result.why};
   }
   return {
       {"folder", finished.folder}, {"places", places}, {"settings", settings}, {"judged", judged}};

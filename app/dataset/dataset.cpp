@@ -336,13 +336,12 @@ bool DataSet::make(std::size_t image) {
 
   const raytrace::CameraModel model = raytrace::make_camera_model(camera, map.columns, map.rows);
   Json record = {{"key", key_}, {"image", image}};
-  const auto three = [](const Vec3& v) { return Json{v.x, v.y, v.z}; };
   record["drawn"] = {{"set", draw.overrides},
                      {"camera",
                       {{"name", camera.name},
-                       {"position_m", three(camera.position)},
-                       {"look_at_m", three(camera.look_at)},
-                       {"up", three(camera.up)}}},
+                       {"position_m", to_json(camera.position)},
+                       {"look_at_m", to_json(camera.look_at)},
+                       {"up", to_json(camera.up)}}},
                      {"seed", draw.seed}};
   if (draw.white_cd_m2) record["drawn"]["white_cd_m2"] = *draw.white_cd_m2;
   record["columns"] = map.columns;

@@ -46,28 +46,6 @@ std::vector<std::string> texts(const TableReader& table, std::string_view key) {
   return all;
 }
 
-std::optional<double> number_of(const TomlNode& node) {
-  if (const auto* whole = std::get_if<std::int64_t>(&node.value)) {
-    return static_cast<double>(*whole);
-  }
-  const auto* number = std::get_if<double>(&node.value);
-  return number != nullptr && std::isfinite(*number) ? std::optional(*number) : std::nullopt;
-}
-
-// Numbers, or lists of as many numbers.
-std::vector<double> numbers_of(const TomlNode& node) {
-  if (const auto number = number_of(node)) return {*number};
-  std::vector<double> numbers;
-  if (const auto* items = std::get_if<TomlArray>(&node.value)) {
-    for (const TomlNode& item : *items) {
-      const auto number = number_of(item);
-      if (!number) return {};
-      numbers.push_back(*number);
-    }
-  }
-  return numbers;
-}
-
 // [low, high]: numbers, or vectors of one length.
 std::vector<Bounds> read_bounds(const TableReader& table, std::string_view key,
                                 const Range& range = scenes::any_number) {
@@ -76,7 +54,8 @@ std::vector<Bounds> read_bounds(const TableReader& table, std::string_view key,
   const auto* ends = std::get_if<TomlArray>(&entry->node.value);
   std::vector<Bounds> bounds;
   if (ends != nullptr && ends->size() == 2) {
-    const std::vector<double> low = numbers_of((*ends)[0]), high = numbers_of((*ends)[1]);
+    const std::vector<double> low = scenes::numbers_of((*ends)[0]),
+                              high = scenes::numbers_of((*ends)[1]);
     for (std::size_t k = 0; low.size() == high.size() && k < low.size(); ++k) {
       if (low[k] <= high[k] && range.holds(low[k]) && range.holds(high[k])) {
         bounds.push_back({low[k], high[k]});

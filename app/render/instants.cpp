@@ -153,7 +153,8 @@ raytrace::Frame mean_of_instants(const RenderContext& context, const scenes::Cam
     RenderCall call = context.call;
     if (options.time_limit_s > 0.0) {
       const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;
-      own.time_limit_s = std::max(1e-3, 0.5 * (options.time_limit_s - gone.count()) / (instants - k));
+      own.time_limit_s =
+          std::max(1e-3, 0.5 * (options.time_limit_s - gone.count()) / (instants - k));
       call.time_limit_s = own.time_limit_s;
     }
     const Solved light = find_light({call, common, moved, query, {}, Interrupt::asked}, within);

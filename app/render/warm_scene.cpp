@@ -6,7 +6,6 @@
 
 #include "app/console.h"
 #include "app/options.h"
-#include "radiosity/store/solution_key.h"
 #include "scenes/effects/light_groups.h"
 #include "scenes/read/scene_file.h"
 
@@ -28,11 +27,8 @@ void WarmScene::read() {
   quality = loaded.scene.quality;
   warnings = loaded.scene.warnings;
   view_warnings_.clear();
-  std::vector<std::uint64_t> parts;
-  for (const radiosity::ScenePart& part :
-       radiosity::scene_parts(loaded.scene, scenes::find_light_groups(loaded.scene))) {
-    parts.push_back(part.digest);
-  }
+  loaded.groups = scenes::find_light_groups(loaded.scene);
+  std::vector<std::uint64_t> parts = KeptLights::digests_of(loaded);
   parts.resize(2);  // geometry and materials
   if (query && parts == shape_) return;
   query.reset();

@@ -127,7 +127,7 @@ class SceneText {
   [[nodiscard]] std::string text() const {
     const Vec3 size = bounds_.high - bounds_.low;
     std::string all = fmt::format(
-        "# Every key: docs/scene-format.md. What was read of this file: earthshine inspect.\n"
+        "# Every key: docs/scene-format.md. \"earthshine inspect\" shows the values read.\n"
         "format = 1\nname = {}\n"
         "unit = \"m\"  # m, cm, mm, ft or in: of all lengths, those of OBJ, PLY and STL files too; "
         "all objects together are {:.4g} x {:.4g} x {:.4g}\n\n",

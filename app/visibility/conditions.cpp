@@ -125,9 +125,14 @@ Json StudyConditions::cache_key(const StudyCamera& camera, const Json& frame_cac
     cache_key["cctv"] = settings_json(camera.cctv->chain.camera);
     cache_key["monitor"] = monitor_json(camera.cctv->chain.monitor);
   }
-  // Reasons name objects, and explained details depend on their number.
+  // Motion blurs targets. Reasons name objects, and explained details depend on their number.
+  const auto motion_key = [](const scenes::Motion& motion) {
+    return Json{to_json(motion.velocity_m_s), to_json(motion.spin_deg_s)};
+  };
+  cache_key["motion"] = motion_key(camera.camera->motion);
   for (const scenes::Object& object : part_.loaded.scene.objects) {
-    cache_key["objects"].push_back(object.name);
+    cache_key["objects"].push_back({object.name, motion_key(object.motion)});
+    if (object.spin_about) cache_key["objects"].push_back(to_json(*object.spin_about));
   }
   cache_key["explain"] = static_cast<int>(options().explain);
   cache_key["targets"] = part_.targets;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of `earthshine console --serve`: pictures of a scene while its camera, lamps, objects and joints move. A
 // picture at once after each move, then better ones while nothing moves.
-const byId = (id) => document.getElementById(id);
-const data = JSON.parse(byId("data").textContent);
 const token = new URLSearchParams(location.search).get("token");
 const size = 256, restMs = 250;
 const short = (value, digits = 6) => String(Number(Number(value).toPrecision(digits)));
@@ -13,7 +11,6 @@ let shown = null; // the last picture: {head, planes, luminance}
 let isFalse = false;
 
 const add = (a, b, times = 1) => a.map((value, k) => value + times * b[k]);
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const norm = (a) => Math.hypot(...a);
 const unit = (a) => a.map((value) => value / norm(a));
 // v turned by an angle about a unit axis (Rodrigues).
@@ -54,23 +51,15 @@ const requestOf = (level) => {
 
 const paint = () => {
   if (!shown) return;
-  const { planes, luminance, head: { columns, rows } } = shown, canvas = byId("picture"), bytes = new Uint8ClampedArray(4 * luminance.length);
-  const tone = toneOf(luminance, null), top = isFalse ? falseTopOf(luminance) : 0;
-  for (let i = 0; i < luminance.length; ++i) {
-    if (isFalse) {
-      const k = 4 * falseIndex(luminance[i], top);
-      for (let c = 0; c < 3; ++c) bytes[4 * i + c] = falseTable[k + c];
-    } else {
-      const scale = toneScale(tone, luminance[i]), rgb = planes.map((plane) => Math.max(0, plane[i] * scale)), over = Math.max(1, ...rgb);
-      for (let c = 0; c < 3; ++c) bytes[4 * i + c] = srgbByte(rgb[c] / over);
-    }
-    bytes[4 * i + 3] = 255;
-  }
+  const { planes, luminance, head: { columns, rows } } = shown, canvas = byId("picture");
+  const top = isFalse ? falseTopOf(luminance) : null, bytes = pictureBytes(planes, luminance, { top });
   canvas.width = columns;
   canvas.height = rows;
   canvas.getContext("2d").putImageData(new ImageData(bytes, columns, rows), 0, 0);
   byId("screen").style.aspectRatio = `${data.cameras[state.camera].columns} / ${data.cameras[state.camera].rows}`;
   byId("false").setAttribute("aria-pressed", String(isFalse));
+  byId("scale").hidden = !isFalse;
+  if (isFalse) showScale(top, "cd/m²");
 };
 
 const stampOf = ({ kind, columns, rows, seconds, error }) => {

@@ -1,7 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the pages of `earthshine view` share: their data, the scale of false colours, the facts of the file.
+// Shared by the pages of `earthshine view` and of the live preview.
 const byId = (id) => document.getElementById(id);
 const data = JSON.parse(byId("data").textContent);
+
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+
+// RGBA of a picture of one or three planes: with that white (null: its own), or in false colours with `top`, the power of
+// ten of the brightest colour.
+const pictureBytes = (planes, luminance, { white = null, top = null }) => {
+  const bytes = new Uint8ClampedArray(4 * luminance.length), tone = toneOf(luminance, white);
+  for (let i = 0; i < luminance.length; ++i) {
+    const y = luminance[i];
+    if (top !== null) {
+      const k = 4 * falseIndex(y, top);
+      for (let c = 0; c < 3; ++c) bytes[4 * i + c] = Number.isNaN(y) ? 0 : falseTable[k + c];
+    } else {
+      const scale = toneScale(tone, Math.max(0, y));
+      const rgb = [0, 1, 2].map((c) => Math.max(0, planes[planes.length === 3 ? c : 0][i] * scale));
+      const over = Math.max(1, ...rgb);
+      for (let c = 0; c < 3; ++c) bytes[4 * i + c] = srgbByte(rgb[c] / over);
+    }
+    bytes[4 * i + 3] = 255;
+  }
+  return bytes;
+};
 
 // top: the power of ten of the brightest colour.
 const showScale = (top, unit) => {

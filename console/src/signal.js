@@ -20,7 +20,7 @@ const farless = known(function farless(kind, ...given) {
 
 const passThrough = (light, { camera, monitor }, fovDeg) => {
   const { signal: exposed, exposure } = throughLens(light, camera, fovDeg);
-  const { before, full, amplified } = throughSensor(exposed, camera, monitor, null, exposure, null, null);
+  const { before, full } = throughSensor(exposed, camera, monitor, null, exposure, null, null);
   const { columns, rows } = before, law = noiseLaw(camera);
   const steps = [];
   if (camera.black_clamp) steps.push(["below", 0]);
@@ -39,7 +39,7 @@ const passThrough = (light, { camera, monitor }, fovDeg) => {
     bandwidth: farless("lineFilter", columns, camera.bandwidth_mhz, camera.aperture_correction, monitor.columns),
     spreadAlong: meanSpread(monitor.spread, monitor.spread_width, columns, monitor.pixels_per_resel),
     spreadAcross: meanSpread(monitor.spread, monitor.spread_width, rows, monitor.pixels_per_resel),
-    room: (monitor.reflectance * monitor.room_illuminance) / Math.PI, level: luminancePlane(amplified),
+    room: (monitor.reflectance * monitor.room_illuminance) / Math.PI,
   };
   const read = squaredMap(line.bandwidth);
   line.amplifierAtLine = Float32Array.from({ length: columns }, (_, x) => {

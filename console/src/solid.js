@@ -41,7 +41,6 @@ const turnOf = ({ azimuth, height }) => {
 };
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const eyeOf = () => [view.across * solid.radius, view.down * solid.radius, view.distance * solid.radius];
 
 const makeSolid = () => {

@@ -24,31 +24,12 @@ const planesOf = async (layer) => {
   return planes;
 };
 
-const bytesOf = () => {
-  const { planes, luminance } = shown, bytes = new Uint8ClampedArray(4 * luminance.length);
-  const isFalse = byId("false").checked, white = shown.base * 10 ** Number(byId("white").value);
-  const tone = toneOf(luminance, white);
-  for (let i = 0; i < luminance.length; ++i) {
-    const y = luminance[i];
-    if (isFalse) {
-      const k = 4 * falseIndex(y, shown.top + Number(byId("white").value));
-      for (let c = 0; c < 3; ++c) bytes[4 * i + c] = Number.isNaN(y) ? 0 : falseTable[k + c];
-    } else {
-      const scale = toneScale(tone, Math.max(0, y));
-      const rgb = [0, 1, 2].map((c) => Math.max(0, planes[planes.length === 3 ? c : 0][i] * scale));
-      const over = Math.max(1, ...rgb);
-      for (let c = 0; c < 3; ++c) bytes[4 * i + c] = srgbByte(rgb[c] / over);
-    }
-    bytes[4 * i + 3] = 255;
-  }
-  return bytes;
-};
-
 const draw = () => {
   const canvas = byId("picture"), power = Number(byId("white").value), isFalse = byId("false").checked;
+  const bytes = pictureBytes(shown.planes, shown.luminance, isFalse ? { top: shown.top + power } : { white: shown.base * 10 ** power });
   canvas.width = data.columns;
   canvas.height = data.rows;
-  canvas.getContext("2d").putImageData(new ImageData(bytesOf(), data.columns, data.rows), 0, 0);
+  canvas.getContext("2d").putImageData(new ImageData(bytes, data.columns, data.rows), 0, 0);
   byId("stops").value = `${(shown.base * 10 ** power).toPrecision(3)} ${shown.layer.unit}`;
   byId("scale").hidden = !isFalse;
   showScale(shown.top + power, shown.layer.unit);

@@ -92,19 +92,20 @@ std::vector<char> MovedParts::unmoved(const Patches& patches, double margin_m) c
   return kept;
 }
 
-bool MovedParts::meets(const Vec3& from, const Vec3& way, double t_max, double radius_m) const {
-  const Vec3 per_way = 1.0 / way;
+bool MovedParts::meets(const Vec3& from, const Vec3& direction, double t_max,
+                       double radius_m) const {
+  const Vec3 inverse = 1.0 / direction;
   for (std::size_t k = 0; k < nodes_.size();) {
     const Node& node = nodes_[k];
     double enter = 0.0, leave = t_max;
     for (int axis = 0; axis < 3; ++axis) {
       const double low = node.low[axis] - radius_m - from[axis];
       const double high = node.high[axis] + radius_m - from[axis];
-      if (way[axis] == 0.0) {
+      if (direction[axis] == 0.0) {
         if (low > 0.0 || high < 0.0) leave = -1.0;
         continue;
       }
-      const double a = low * per_way[axis], b = high * per_way[axis];
+      const double a = low * inverse[axis], b = high * inverse[axis];
       enter = std::max(enter, std::min(a, b));
       leave = std::min(leave, std::max(a, b));
     }

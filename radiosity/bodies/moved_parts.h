@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "radiosity/bodies/closed_bodies.h"
@@ -19,10 +18,6 @@ class MovedParts {
   // one of them only count as moved.
   MovedParts(const std::vector<Vec3>& then, const ClosedBodies& bodies_then,
              const scenes::Scene& now, const ClosedBodies& bodies_now);
-
-  [[nodiscard]] bool any() const { return !nodes_.empty(); }
-  // Everything may have changed: nothing may be kept.
-  [[nodiscard]] bool all() const { return all_; }
 
   // Patches that did not move and lie in no box of a moved body or object: they are covered by the
   // same bodies in both poses. margin_m: around the patch.
@@ -44,15 +39,16 @@ class MovedParts {
     bool is_leaf;
   };
   void build(std::vector<Item>& items, std::size_t begin, std::size_t end);
-  // Whether the segment from, from + t way, t in [0, 1], meets a box widened by radius_m.
-  [[nodiscard]] bool meets(const Vec3& from, const Vec3& way, double t_max, double radius_m) const;
+  // Whether the segment from, from + t direction, t in [0, t_max], meets a box widened by radius_m.
+  [[nodiscard]] bool meets(const Vec3& from, const Vec3& direction, double t_max,
+                           double radius_m) const;
 
   std::vector<char> moved_;  // per triangle
   std::vector<Node> nodes_;  // in preorder
   std::vector<Item> around_;
   double margin_m_ = 0.0;
   std::size_t most_of_leaf_ = 1;
-  bool all_ = false;
+  bool all_ = false;  // everything may have changed: nothing may be kept
 };
 
 }  // namespace earthshine::radiosity

@@ -7,6 +7,7 @@
 #include "base/numbers/random.h"
 #include "radiosity/bodies/closed_bodies.h"
 #include "radiosity/patches/patch_offset.h"
+#include "scenes/light/photometry.h"
 #include "scenes/light/shadow_queue.h"
 
 namespace earthshine::radiosity {
@@ -101,7 +102,8 @@ bool is_same(const scenes::Lamp& a, const scenes::Lamp& b) {
          a.intensity_cd == b.intensity_cd && a.beam_deg == b.beam_deg &&
          a.field_deg == b.field_deg && a.edge_u == b.edge_u && a.edge_v == b.edge_v &&
          a.radius_m == b.radius_m && a.exitance == b.exitance && a.c0 == b.c0 &&
-         a.photometry == b.photometry;
+         (a.photometry == b.photometry ||
+          (a.photometry && b.photometry && *a.photometry == *b.photometry));
 }
 
 bool are_same(std::span<const scenes::FlatMirror> a, std::span<const scenes::FlatMirror> b) {
@@ -116,9 +118,9 @@ double radius_of(const scenes::Lamp& lamp) {
 }
 
 double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 way = b - a;
-  const double t = std::clamp(glm::dot(p - a, way) / glm::dot(way, way), 0.0, 1.0);
-  return glm::length(p - a - t * way);
+  const Vec3 along = b - a;
+  const double t = std::clamp(glm::dot(p - a, along) / glm::dot(along, along), 0.0, 1.0);
+  return glm::length(p - a - t * along);
 }
 
 // Whether nothing that moved is on any path of light from the lamp to the patch.

@@ -20,7 +20,7 @@ struct SolutionOrigin {
   const scenes::Scene& scene;
   const scenes::LightGroups& groups;
   const SolveOptions& options;
-  std::string program;  // version: other versions may give other numbers
+  std::string program;                        // version: other versions may give other numbers
   const scenes::Scene* first_pose = nullptr;  // whose patches these are, posed; null: of `scene`
   // Reading: gets the settings of the solve that differ from `options`; null: they are refused.
   std::vector<std::string>* other_settings = nullptr;

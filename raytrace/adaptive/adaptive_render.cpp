@@ -23,7 +23,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 bool draws_sums(const RenderOptions& options, std::size_t layers) {
-  return !options.sums.empty() && layers > 1 && options.error > 0.0;
+  return !options.sums.empty() && layers > 1 && options.error > 0.0 && options.crop.columns == 0;
 }
 
 Allocator allocator_of(const RenderOptions& options, std::size_t layers) {

@@ -32,8 +32,9 @@ class ErrorDemand {
 
 class SumErrors {
  public:
-  // sums: weights of the layers' luminance. The field has samples; it need not be denoised by
-  // layer. all: the stated error of the sum of all layers. Sums and arguments must outlive it.
+  // sums: of the whole picture. field: with samples; it need not be denoised by layer. all: the
+  // stated error of the sum of all layers. of: weights of the layers' luminance, by sum. `sums` and
+  // `of` must outlive it.
   SumErrors(const PixelSums& sums, const GatherField& field, const ErrorSums& all,
             std::span<const std::vector<double>> of, int columns);
 
@@ -50,7 +51,7 @@ class SumErrors {
   std::vector<double> squared_;
 };
 
-// Noise of the layers by part, at places of the picture. one_in: as LayerNoise::thinned().
+// Noise of the layers by part, at places of the whole picture. one_in: LayerNoise::selects().
 [[nodiscard]] std::vector<LayerNoise> noise_by_part(const PixelSums& sums, const GatherField& field,
                                                     int columns, std::size_t one_in);
 

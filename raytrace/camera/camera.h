@@ -73,12 +73,13 @@ struct CameraModel {
   [[nodiscard]] Vec3 through_lens(const Vec3& on_lens, const Vec3& point) const;
 };
 
-// The sample's camera: `camera` itself if it does not move, otherwise at a time of the exposure,
-// which is kept in `moved`.
-inline const CameraModel& camera_of_sample(const CameraModel& camera, double y, double u,
-                                           CameraModel& moved) {
+// The sample's camera: `camera` itself if it does not move, otherwise at time() of the row's
+// exposure, from 0 to 1, which is kept in `moved`.
+template <class Time>
+const CameraModel& camera_of_sample(const CameraModel& camera, double y, const Time& time,
+                                    CameraModel& moved) {
   if (!camera.moves()) return camera;
-  moved = camera.at_row(y, u);
+  moved = camera.at_row(y, time());
   return moved;
 }
 

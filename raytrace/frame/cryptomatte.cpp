@@ -169,10 +169,8 @@ void cover(const scenes::RayQuery& query, const CameraModel& camera, const Pixel
       const auto p = points.point(first + k);
       const auto offset = filter.offset(p[0], p[1]);
       CameraModel moved;
-      const CameraModel& then =
-          camera.moves() ? camera_of_sample(
-                               camera, y, points.time(first + k, camera.lens_radius_m > 0.0), moved)
-                         : camera;
+      const CameraModel& then = camera_of_sample(
+          camera, y, [&] { return points.time(first + k, camera.lens_radius_m > 0.0); }, moved);
       const Ray ray = then.ray(x + 0.5 + offset[0], y + 0.5 + offset[1], p[2], p[3]);
       query.set(packet, k, ray.origin, ray.direction);
     }

@@ -83,7 +83,8 @@ std::vector<GatherField::Found> GatherField::find_points() {
       for (int y = tile.y; y < tile.y + tile.rows; ++y) {
         const auto count = static_cast<std::size_t>(tile.columns);
         CameraModel moved;
-        const CameraModel& camera = camera_of_sample(camera_, y, 0.5, moved);
+        const CameraModel& camera = camera_of_sample(
+            camera_, y, [] { return 0.5; }, moved);
         for (std::size_t k = 0; k < count; ++k) {
           rays[k] = camera.ray(tile.x + static_cast<double>(k) + 0.5, y + 0.5, 0.0, 0.0);
           world_.query.set(packet, k, rays[k].origin, rays[k].direction);
@@ -119,7 +120,8 @@ std::array<GatherField::Met, packet_width> GatherField::trace_pixel(std::size_t 
   HitPacket hits;
   std::array<Met, packet_width> met;
   CameraModel moved;
-  const CameraModel& camera = camera_of_sample(camera_, y, 0.5, moved);
+  const CameraModel& camera = camera_of_sample(
+      camera_, y, [] { return 0.5; }, moved);
   for (std::size_t k = first; k < end; ++k) {
     met[k].ray = camera.ray(x + x_of[k], y + y_of[k], 0.0, 0.0);
     world_.query.set(packet, k - first, met[k].ray.origin, met[k].ray.direction);

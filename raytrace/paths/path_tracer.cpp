@@ -148,8 +148,8 @@ Frame trace_paths(const scenes::World& world, const scenes::Camera& camera,
         const double lens_u = rng.next();
         const double lens_v = rng.next();
         CameraModel moved;
-        const CameraModel& then =
-            model.moves() ? camera_of_sample(model, at_y, rng.next(), moved) : model;
+        const CameraModel& then = camera_of_sample(
+            model, at_y, [&] { return rng.next(); }, moved);
         sums.add(walker.walk(then.ray(at_x, at_y, lens_u, lens_v), rng), walker);
       }
       store(sums, y * columns + x, frame);

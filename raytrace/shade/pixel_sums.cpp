@@ -28,16 +28,17 @@ void shade_pixel(const ShadingScene& shared, const CameraModel& camera, int x, i
   std::array<glm::dvec2, scenes::RayPacket::width> at;  // in the picture, px
   std::array<CameraModel, scenes::RayPacket::width> moved;
   std::array<const CameraModel*, scenes::RayPacket::width> cameras;
+  CameraModel in_middle;
+  const CameraModel& middle = camera_of_sample(
+      camera, y, [] { return 0.5; }, in_middle);
   for (std::size_t from = first; from < end; from += rays.size()) {
     const std::size_t count = std::min<std::size_t>(rays.size(), end - from);
     for (std::size_t k = 0; k < count; ++k) {
       const auto p = points.point(from + k);
       const auto offset = shared.filter.offset(p[0], p[1]);
       at[k] = {x + 0.5 + offset[0], y + 0.5 + offset[1]};
-      cameras[k] = camera.moves()
-                       ? &camera_of_sample(
-                             camera, y, points.time(from + k, camera.lens_radius_m > 0.0), moved[k])
-                       : &camera;
+      cameras[k] = &camera_of_sample(
+          camera, y, [&] { return points.time(from + k, camera.lens_radius_m > 0.0); }, moved[k]);
       rays[k] = cameras[k]->ray(at[k].x, at[k].y, p[2], p[3]);
       shared.query.set(packet, k, rays[k].origin, rays[k].direction);
     }
@@ -46,8 +47,7 @@ void shade_pixel(const ShadingScene& shared, const CameraModel& camera, int x, i
       const scenes::Hit hit{hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0};
       if (camera.moves() && !hit.missed()) {
         // Where the gather points of the picture, in the middle of the exposure, show the hit.
-        at[k] = camera.at_row(y, 0.5).film_from(camera.at_row(y, 0.5).position,
-                                                rays[k].origin + hit.t * rays[k].direction);
+        at[k] = middle.film_from(middle.position, rays[k].origin + hit.t * rays[k].direction);
       }
       shader.look_near(static_cast<int>(std::floor(at[k].x)),
                        static_cast<int>(std::floor(at[k].y)));

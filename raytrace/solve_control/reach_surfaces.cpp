@@ -55,7 +55,7 @@ class SurfaceSearch {
 
   SteeredSolution run() {
     if (!light_) return std::move(result_);
-    rounds_->set_mean(light_->told_mean());
+    rounds_->set_mean(light_->mean_on_all_ranks());
     try {
       if (rounds_->mean() <= 0.0) rounds_->find_light();
       if (rounds_->mean() > 0.0) {
@@ -82,8 +82,7 @@ class SurfaceSearch {
       return [this, of_pass = stage(name)](std::size_t done, std::size_t total) {
         if (!of_pass || total == 0) return;
         const std::size_t before = parts_of_a_pass * result_.steps.size();
-        of_pass(before + parts_of_a_pass * done / total,
-                before + parts_of_a_pass * passes_to_go());
+        of_pass(before + parts_of_a_pass * done / total, before + parts_of_a_pass * passes_to_go());
       };
     };
   }

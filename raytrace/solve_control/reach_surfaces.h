@@ -14,12 +14,13 @@ namespace earthshine::raytrace {
 [[nodiscard]] radiosity::SolveOptions first_surface_options(const scenes::Scene& scene,
                                                             double error, std::uint64_t seed);
 
+inline constexpr std::size_t parts_of_a_pass = 1000;
+
 // Solves once, with coarse patches and few rays. Then repeats passes until the stated error reaches
 // the wanted one, or a limit ends them: sample the residual on all patches, state the error,
 // correct the light (surface_light.h), divide the patches with most of the unevenness, and
 // distribute rays where noise is largest. Values in the scene's quality stay fixed. `progress` gets
 // the name of each stage; it may be empty. Its reports count parts of passes, the total as predicted.
-inline constexpr std::size_t parts_of_a_pass = 1000;
 [[nodiscard]] SteeredSolution reach_surfaces(const scenes::World& scene, const Wanted& wanted,
                                              std::uint64_t seed, const SolveListener& listen,
                                              const StageListener& progress = {});

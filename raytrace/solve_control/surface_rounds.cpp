@@ -91,15 +91,15 @@ void SurfaceRounds::update(SurfaceRefiner& choice, std::span<const std::uint32_t
 bool SurfaceRounds::cut(SurfaceRefiner& choice, const How& how, std::vector<std::uint32_t>& parent,
                         SurfaceRefiner* also) {
   const std::size_t before = light_.patches().count();
-  const auto told_left = [&] {
+  const auto left_on_all_ranks = [&] {
     double left = is_root() ? choice.total() : 0.0;
     light_.shares().broadcast(&left, 1);
     return left;
   };
-  double last_left = told_left();
+  double last_left = left_on_all_ranks();
   for (int k = 0; k < most_rounds && time_gone() <= how.until; ++k) {
     if (k > 0 && k % gain_rounds == 0) {
-      const double left = told_left();
+      const double left = left_on_all_ranks();
       if (left > least_gain * last_left) break;
       last_left = left;
     }
@@ -151,7 +151,7 @@ void SurfaceRounds::find_light() {
   std::iota(all.begin(), all.end(), 0U);
   SurfaceRefiner choice(light_.patches(), light_.light().spot_m2);
   update(choice, all, for_shadows(0.0));
-  mean_ = light_.told_mean();
+  mean_ = light_.mean_on_all_ranks();
 }
 
 bool SurfaceRounds::cut_shadows(double enough, std::vector<std::uint32_t>& parent,

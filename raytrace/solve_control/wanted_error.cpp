@@ -19,7 +19,7 @@ constexpr double balance = 0.1;
 // with sixteen points, four points have 0.95 to 1.03 of the squared error times CPU time, and the
 // solve takes a third less time by night.
 constexpr int flux_rays = 1 << 12, direct_points = 4;
-constexpr double told_by = 8.0;           // passes with at least 1/8 of the rays so far count
+constexpr double most_ray_ratio = 8.0;    // passes with at least 1/8 of the rays so far count
 constexpr double most_times_more = 16.0;  // the rays so far
 constexpr double least_power = 0.05;      // of the rays: an error may seem to rise by chance
 constexpr double least_told = 1e-3;       // least error in the fit, over the wanted error
@@ -53,7 +53,7 @@ std::string limit_name(Limit limit) {
 bool is_far_off(const std::vector<PassError>& passes, double wanted) {
   double count = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, fewest = 1.0;
   for (const PassError& pass : passes) {
-    if (told_by * pass.rays < passes.back().rays) continue;
+    if (most_ray_ratio * pass.rays < passes.back().rays) continue;
     fewest = std::min(fewest, pass.rays / passes.back().rays);
     const double rays = std::log(pass.rays / passes.back().rays);
     const double error = std::log(std::max(pass.error, least_told * wanted));

@@ -48,7 +48,7 @@ SurfaceError surface_error(const scenes::World& scene, const radiosity::Solution
   lit.indirect_lx = solution.indirect_lx;
   const LightOnSurfaces light(scene, std::move(lit), std::move(matrix),
                               2.0 * solution.report.rays_per_patch);
-  const double mean = light.told_mean();
+  const double mean = light.mean_on_all_ranks();
   error.known = mean > 0.0;
   if (!error.known) return error;
   std::vector<std::uint32_t> all(light.patches().count());

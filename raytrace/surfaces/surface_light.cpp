@@ -121,7 +121,7 @@ double LightOnSurfaces::mean_radiosity() const {
   return area > 0.0 ? sum / area : 0.0;
 }
 
-double LightOnSurfaces::told_mean() const {
+double LightOnSurfaces::mean_on_all_ranks() const {
   double mean = factors_.shares.is_root() ? mean_radiosity() : 0.0;
   factors_.shares.broadcast(&mean, 1);
   return mean;

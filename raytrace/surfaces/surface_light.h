@@ -33,7 +33,7 @@ class LightOnSurfaces {
 
   // On the root rank only, like lamp_rays() and gather_rays(). Luminance, over the open parts.
   [[nodiscard]] double mean_radiosity() const;
-  [[nodiscard]] double told_mean() const;  // collective; on all ranks
+  [[nodiscard]] double mean_on_all_ranks() const;  // collective; on all ranks
   // Samples already in the light of a patch.
   [[nodiscard]] double lamp_rays(std::uint32_t patch) const { return lamp_rays_[patch]; }
   [[nodiscard]] double gather_rays(std::uint32_t patch) const { return gather_rays_[patch]; }

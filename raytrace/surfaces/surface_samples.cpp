@@ -18,7 +18,7 @@ namespace {
 
 constexpr int source_points = 16;  // by radiosity::find_sources() for a small distant source
 constexpr std::size_t wide_source_samples = 4;
-constexpr std::size_t told_after = 1024;  // patches between calls of progress
+constexpr std::size_t patches_between_reports = 1024;  // patches between calls of progress
 // Candidates per sampled point on a partly covered patch. They give the open share, the weight of
 // the patch, accurately.
 constexpr std::uint32_t tried_points = 16;
@@ -143,12 +143,12 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
   }
   if (is_root) found.residual.resize(light.count());
   found.rays = sight.rays();
-  constexpr std::size_t chunk = 32;  // patches; told_after is a multiple of it
+  constexpr std::size_t chunk = 32;  // patches; patches_between_reports is a multiple of it
   std::vector<std::uint64_t> rays_of((which.size() + chunk - 1) / chunk, 0);
   // Ranks wait for each other at the end of a batch: few batches if there are ranks.
-  const std::size_t batch = base::ranks() == nullptr
-                                ? told_after
-                                : std::max(told_after, which.size() / (8 * chunk) * chunk);
+  const std::size_t batch = base::ranks() == nullptr ? patches_between_reports
+                                                     : std::max(patches_between_reports,
+                                                                which.size() / (8 * chunk) * chunk);
   std::vector<PatchResidual> seen(std::min(batch, which.size()));  // of a batch
   const auto sample_chunk = [&](std::size_t begin, std::size_t end) {
     PatchSampler sampler(scene_, kept_, table, bright, groups, sky_parts);

@@ -18,6 +18,8 @@ class Photometry {
   Photometry(std::vector<double> vertical_deg, std::vector<double> horizontal_deg,
              std::vector<double> candela);
 
+  [[nodiscard]] bool operator==(const Photometry&) const = default;
+
   [[nodiscard]] double peak_cd() const { return peak_cd_; }
   // Flux of a luminaire with a maximum of 1 cd: the integral of relative(theta, phi) over all
   // directions, exact for the interpolated table. For theta between a and b = a + 2 h, with m = a +

@@ -5,6 +5,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <utility>
@@ -254,6 +255,27 @@ void guard_toml(std::string_view text, const std::string& file) {
     }
     i += length;
   }
+}
+
+std::optional<double> number_of(const TomlNode& node) {
+  if (const auto* whole = std::get_if<std::int64_t>(&node.value)) {
+    return static_cast<double>(*whole);
+  }
+  const auto* number = std::get_if<double>(&node.value);
+  return number != nullptr && std::isfinite(*number) ? std::optional(*number) : std::nullopt;
+}
+
+std::vector<double> numbers_of(const TomlNode& node) {
+  if (const auto number = number_of(node)) return {*number};
+  std::vector<double> numbers;
+  if (const auto* items = std::get_if<TomlArray>(&node.value)) {
+    for (const TomlNode& item : *items) {
+      const auto number = number_of(item);
+      if (!number) return {};
+      numbers.push_back(*number);
+    }
+  }
+  return numbers;
 }
 
 }  // namespace earthshine::scenes

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -44,6 +45,11 @@ struct TomlEntry {
 // The root table of a file. Throws as parse_toml, and if the path is not a regular file or the file
 // is of another kind.
 [[nodiscard]] TomlNode read_toml(const std::filesystem::path& path);
+
+// A finite number.
+[[nodiscard]] std::optional<double> number_of(const TomlNode& node);
+// A number, or the numbers of a list; empty for anything else.
+[[nodiscard]] std::vector<double> numbers_of(const TomlNode& node);
 
 // "the string "abc"", "the number 3", "a table": for messages.
 [[nodiscard]] std::string describe(const TomlNode& node);

@@ -31,7 +31,7 @@ TEST(Forecast, FinishedStagesCorrectThoseOfTheirKind) {
 // A picture to an error reports the end of each of its rounds as the end of all that is known.
 TEST(Forecast, ReportsOfRoundsDoNotHurryAPicture) {
   Forecast forecast;
-  forecast.begin({"picture", 40.0, false}, 0.0);
+  forecast.begin({"picture", 40.0}, 0.0);
   forecast.advance(10, 10);
   EXPECT_NEAR(forecast.at(4.0).seconds_to_go, 36.0, 1e-9);
   EXPECT_NEAR(forecast.at(4.0).share, 0.1, 1e-9);
@@ -51,7 +51,7 @@ TEST(Forecast, TheShareNeverFalls) {
     last = share;
   };
   for (const double seconds : {50.0, 0.1, 300.0}) {
-    forecast.begin({seconds > 100.0 ? "unannounced" : "short", 1.0, seconds < 100.0}, now);
+    forecast.begin({seconds > 100.0 ? "unannounced" : "short", 1.0}, now);
     for (int k = 0; k < 50; ++k) {
       now += seconds / 50.0;
       if (seconds < 100.0) forecast.advance(static_cast<std::size_t>(k), 50);

@@ -118,7 +118,10 @@ class Console(tiny_bay.Case):
         self.assertNotEqual(fields, tiny_bay.BAY)
         self.write("bay.toml", fields)
         self.says(self.refused("console", "d", "-o", "n.html"), "has changed since the study", "camera A")
-        (self.folder / "d" / "study.json").unlink()
+        results = self.folder / "d" / "study.json"
+        results.write_text(re.sub(r'"seed": 1', '"seed": "one"', results.read_text(), count=1))
+        self.says(self.refused("console", "d", "-o", "n.html"), "study.json", "seed")
+        results.unlink()
         self.says(self.refused("console", "d", "-o", "n.html"), "study.json", "cannot be read")
         self.assertFalse((self.folder / "n.html").exists())
 

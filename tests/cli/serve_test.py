@@ -14,10 +14,13 @@ import program
 import tiny_bay
 
 
-class Serve(tiny_bay.Case):
+class Served(tiny_bay.Case):
+    """A running server."""
+    SCENE = tiny_bay.BAY + '\n[[joint]]\nname = "hinge"\npivot = [0, 0, 0]\naxis = [0, 0, 1]\nangle_deg = 10\n'
+
     def setUp(self):
         super().setUp()
-        self.write("bay.toml", tiny_bay.BAY + '\n[[joint]]\nname = "hinge"\npivot = [0, 0, 0]\naxis = [0, 0, 1]\nangle_deg = 10\n')
+        self.write("bay.toml", self.SCENE)
         self.process = subprocess.Popen([os.environ["EARTHSHINE_PROGRAM"], "console", "bay.toml", "--serve"], cwd=self.folder,
                                         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         address = self.process.stdout.readline()
@@ -49,6 +52,8 @@ class Serve(tiny_bay.Case):
         values = struct.unpack(f"<{3 * count}f", content[4 + length:])
         return head, [values[c * count:(c + 1) * count] for c in range(3)]
 
+
+class Serve(Served):
     def test_pictures_of_a_moving_scene(self):
         status, page = self.ask("GET", "/", None)
         self.assertEqual(status, 200)
@@ -154,6 +159,38 @@ class Calls(tiny_bay.Case):
     def test_options_that_write_do_not_go_with_it(self):
         for option in (("-o", "c.html"), ("--camera", "A"), ("--json",), ("--positions", "4")):
             self.says(self.refused("console", "bay.toml", "--serve", *option), "--serve")
+
+
+class WithoutSolution(Served):
+    """A plate under a lamp: nothing reflects light onto anything."""
+    SCENE = """format = 1
+[[material]]
+name = "grey"
+diffuse = 0.5
+[[object]]
+name = "plate"
+shape = "quad"
+corners = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]
+material = "grey"
+[[light]]
+name = "lamp"
+type = "point"
+position = [0, 0, 1]
+intensity = 100
+[[camera]]
+name = "A"
+position = [0, -1, 2]
+look_at = [0, 0, 0]
+"""
+
+    def test_a_picture_at_once_after_a_finer_one(self):
+        means = []
+        for level in (0, 1, 0):
+            _, planes = self.picture(level=level)
+            means.append(sum(planes[1]) / len(planes[1]))
+        self.assertGreater(means[1], 0)
+        for mean in means:
+            self.assertAlmostEqual(mean, means[1], delta=0.3 * means[1])  # level 1 is to 30 %
 
 
 if __name__ == "__main__":

@@ -63,6 +63,19 @@ class Resume(Case):
         at_work.unlink()
         self.assertEqual(self.all_files("o"), self.all_files("whole"))  # no torn or temporary files
 
+    def test_a_target_that_moves_is_judged_anew(self):
+        """Motion blurs a target on the monitor; the picture is of standing objects and stays."""
+        call = ("study", "visibility", "bay.toml", "--size", "16x12", "-q", "-o")
+        self.done(*call, "o")
+        moving = PLAIN_BAY.replace('name = "box"\n', 'name = "box"\nvelocity = [3, 0, 0]\n', 1)
+        self.assertNotEqual(moving, PLAIN_BAY)
+        self.write("bay.toml", moving)
+        self.done(*call, "o")
+        self.done(*call, "fresh")
+        self.assertEqual(self.without_times(self.study("o")), self.without_times(self.study("fresh")))
+        found = self.costs("o")
+        self.assertTrue(all(known == (not stage.startswith("conditions")) for stage, known in found.items()), found)
+
     def test_torn_parts_are_done_again(self):
         self.done(*self.CALL, "-o", "o")
         whole = self.without_times(self.study("o"))

@@ -191,10 +191,9 @@ TEST_F(AttitudeMessage, BetweenRowsTheTurnIsEvenWhateverTheSigns) {
 // Rows of 12:00, 12:10 and 12:20: 600 s exceed a longest gap of 599 s, not one of 601 s.
 TEST_F(AttitudeMessage, GapsAreRefusedWhereAnAttitudeIsAskedForUnlessItIsHeld) {
   const std::string type = "ATTITUDE_TYPE = EULER_ANGLE\nATTITUDE_DIR = A2B\nEULER_ROT_SEQ = 321\n";
-  const AttitudeHistory history =
-      read(aem(type,
-               "2026-03-01T12:00:00 0 0 0\n2026-03-01T12:10:00 9 0 0\n"
-               "2026-03-01T12:20:00 9 0 0\n"));
+  const AttitudeHistory history = read(aem(type,
+                                           "2026-03-01T12:00:00 0 0 0\n2026-03-01T12:10:00 9 0 0\n"
+                                           "2026-03-01T12:20:00 9 0 0\n"));
   const auto said = [&](double at_s, double longest_gap_s) -> std::string {
     try {
       (void)history.at(noon + at_s, longest_gap_s);

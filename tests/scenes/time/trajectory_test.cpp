@@ -216,7 +216,8 @@ TEST_F(TrajectoryFile, GapsAreRefusedWhereAStateIsAskedFor) {
   const std::size_t to = text.find("2026-03-01T12:20:00Z", rows);
   text.erase(from, to - from);
   EXPECT_EQ(refusal(text, start + 480.0), "was not refused");
-  EXPECT_TRUE(holds(refusal(text, start + 700.0), {"t.oem:23", "gap of 660 s", "12:09:00Z", "36 deg"}));
+  EXPECT_TRUE(
+      holds(refusal(text, start + 700.0), {"t.oem:23", "gap of 660 s", "12:09:00Z", "36 deg"}));
 }
 
 TEST_F(TrajectoryFile, UnknownKeywordsAreNamed) {
