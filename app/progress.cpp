@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <csignal>
 #include <system_error>
 #include <vector>
@@ -20,8 +21,10 @@ namespace {
 
 constexpr auto redraw_every = std::chrono::milliseconds(250);
 
-// Others on the machine may slow it down by more, but reading, on one thread, looks like it too.
+// Others on the machine may slow it down by more, but stretches on one thread look like it too.
 constexpr double most_slowdown = 3.0;
+// Seconds of parallel work from which on the slowdown is measured.
+constexpr double least_parallel_s = 1.0;
 
 // CPU seconds of a stage: `fixed` and `each` for a unit. Medians over scenes/library with the
 // settings that go with 5 % error; a finished stage of the same kind corrects them.
@@ -34,8 +37,8 @@ constexpr std::array<Law, 10> laws = {{{Work::Read, "read", 0.2, 0.0},
                                        {Work::Pilot, "pilot", 1.0, 2.0},
                                        {Work::Solve, "solve", 0.2, 2e-5},
                                        {Work::StudySolve, "study solve", 0.5, 2e-5},
-                                       {Work::Picture, "picture", 0.3, 7e-5},
-                                       {Work::StudyPicture, "study picture", 1.0, 2e-4},
+                                       {Work::Picture, "picture", 0.3, 6e-5},
+                                       {Work::StudyPicture, "study picture", 1.0, 3.5e-5},
                                        {Work::Paths, "paths", 0.1, 1e-6},
                                        {Work::Conditions, "conditions", 0.5, 1e-6},
                                        {Work::Surfaces, "surfaces", 1.0, 1e-4},
@@ -73,7 +76,7 @@ std::string cut_in_middle(const std::string& line, std::size_t columns) {
 }
 
 Progress::Progress(bool quiet)
-    : shown_(!quiet && notes_are_on_a_terminal()), cpu_start_(base::cpu_seconds()) {
+    : shown_(!quiet && notes_are_on_a_terminal()) {
   if (!shown_) return;
   // Signals are for the thread that works: they wake what it waits for.
   sigset_t all, before;
@@ -128,6 +131,10 @@ Progress::Listener Progress::begin(const std::string& label, Work work, double u
   if (!shown_) return [](std::size_t, std::size_t) {};
   const std::lock_guard lock(mutex_);
   forecast_.begin(stage_of(work, units), now());
+  if (work != Work::Read && std::isinf(parallel_since_)) {
+    parallel_since_ = now();
+    parallel_cpu_ = base::cpu_seconds();
+  }
   label_ = base::escaped(label);
   stage_ = ++stages_;
   draw();
@@ -154,15 +161,19 @@ double Progress::now() const {
   return std::chrono::duration<double>(Clock::now() - start_).count();
 }
 
+double Progress::slowdown() const {
+  const double gone = now() - parallel_since_;
+  if (gone < least_parallel_s) return 1.0;
+  const double cpu = (base::cpu_seconds() - parallel_cpu_) / base::available_threads();
+  return std::clamp(gone / std::max(cpu, 1e-3), 1.0, most_slowdown);
+}
+
 void Progress::draw() {
   const double gone = now();
-  const double cpu = (base::cpu_seconds() - cpu_start_) / base::available_threads();
-  const double slowdown =
-      gone > 0.5 ? std::clamp(gone / std::max(cpu, 1e-3), 1.0, most_slowdown) : 1.0;
   std::string figures = "  " + duration(gone);
   if (is_planned_) {
     const base::Forecast::State state =
-        forecast_.at(gone, slowdown, std::max(0.0, limit_s_ - gone));
+        forecast_.at(gone, slowdown(), std::max(0.0, limit_s_ - gone));
     figures = fmt::format(" {:3.0f} %{}, about {} to go", 100.0 * state.share, figures,
                           about(state.seconds_to_go));
   }

@@ -38,8 +38,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // units: triangles of a solve; pixels of a picture, at 5 % error; pictures of a pilot; conditions
-  // times pixels.
+  // units: triangles of a solve; pixels of a picture, at 5 % error; StudyPart::picture_units of a
+  // study's; pictures of a pilot; conditions times pixels.
   void expect(Work work, double units);
   // One of these is not needed: its result was there.
   void drop(Work work);
@@ -60,12 +60,14 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
   [[nodiscard]] double now() const;
+  [[nodiscard]] double slowdown() const;  // of the machine by others
   void draw();  // with mutex_ held
   void keep_drawing();
 
   bool shown_;
   Clock::time_point start_ = Clock::now();
-  double cpu_start_;
+  // Seconds of the call and of its CPUs when the first stage on all threads began.
+  double parallel_since_ = std::numeric_limits<double>::infinity(), parallel_cpu_ = 0.0;
   std::mutex mutex_;
   std::condition_variable wake_;
   base::Forecast forecast_;

@@ -294,7 +294,7 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
     drawn = raytrace::render(
         basis.world(*part_.query), light, *camera.camera, how,
         common_.progress->begin(fmt::format("camera {} of {}", camera.camera->name, part_.path),
-                                Work::StudyPicture, double(camera.columns) * camera.rows));
+                                Work::StudyPicture, part_.picture_units(camera)));
   } catch (const Interrupt::Left&) {
     return std::nullopt;
   }

@@ -58,6 +58,12 @@ struct StudyPart {
   [[nodiscard]] std::size_t conditions() const {
     return basis->places().size() * basis->settings().size();
   }
+  // Units of Work::StudyPicture.
+  [[nodiscard]] double picture_units(const StudyCamera& camera) const {
+    constexpr double groups_of_double_cost = 20.0;  // measured on sts46
+    return double(camera.columns) * camera.rows *
+           (1.0 + static_cast<double>(basis->groups().count()) / groups_of_double_cost);
+  }
 };
 
 using StudyParts = std::vector<std::unique_ptr<StudyPart>>;

@@ -102,8 +102,7 @@ class Runner {
     if (part.cameras.empty()) return;
     common_.progress->expect(Work::StudySolve, static_cast<double>(basis.scene.triangles.size()));
     for (const StudyCamera& camera : part.cameras) {
-      const double pixels = double(camera.columns) * camera.rows;
-      common_.progress->expect(Work::StudyPicture, pixels);
+      common_.progress->expect(Work::StudyPicture, part.picture_units(camera));
       common_.progress->expect(Work::Conditions, units_of_conditions(part, camera));
     }
   }
