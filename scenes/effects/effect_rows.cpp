@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "scenes/effects/effects.h"
+#include "scenes/sky/airglow.h"
 #include "scenes/sky/sky.h"
 
 namespace earthshine::scenes {
@@ -147,7 +148,22 @@ class Rows {
     const std::string_view type = lamp_rows[kind].type;
     row(std::string(effect_of(kind_of(static_cast<LampKind>(kind)))), e_.lamp_kind[kind],
         all == 0 ? fmt::format("the scene has no [[light]] with type = \"{}\"", type)
-                 : fmt::format("{} of {} with type = \"{}\" are lit", lit, all, type));
+                 : fmt::format("{} of {} with type = \"{}\" are lit", lit, all, type) +
+                       (kind == static_cast<std::size_t>(LampKind::Distant) ? night() : ""));
+  }
+
+  // Of the lamps that [moon] and [airglow] add: why they are off.
+  std::string night() {
+    std::string text;
+    if (scene_.moon && scene_.moon->hidden) text += "; the Moon is behind the Earth";
+    for (std::size_t k = 0; k < scene_.lamps.size(); ++k) {
+      if (scene_.lamps[k].group != airglow_group) continue;
+      if (groups_.lamp[k] == no_group) {
+        text += "; airglow is off: the Sun lights a part of the Earth in view, or its radiance is 0";
+      }
+      break;
+    }
+    return text;
   }
 
   std::string phong() {

@@ -12,7 +12,6 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr const char* airglow_group = "airglow";
 constexpr int directions = 16;
 
 }  // namespace

@@ -13,6 +13,8 @@ namespace earthshine::scenes {
 // Rhijn, layer at 95 km), and the ground gives back 0.3 of the light that goes down.
 inline constexpr double usual_airglow_cd_m2 = 2.5e-4;
 
+inline constexpr const char* airglow_group = "airglow";
+
 // Adds a disc of even radiance in place of the Earth to the scene's lamps: 16 distant ones of the
 // group "airglow", equal shares of the disc's solid angle, which have hard shadows and no picture of
 // their own. They are off where the Sun lights a part of the Earth that the spacecraft sees.

@@ -112,6 +112,28 @@ class Missions(program.Case):
         self.says(self.refused("inspect", "bay.toml", "--set", "time.moment=2026-03-01T12:20:00"),
                   "door.csv:4", "ends at 2026-03-01T12:12:00Z", "allowed are moments")
 
+    def test_an_array_follows_the_sun_along_a_circle(self):
+        """Bay to space, x is aft: at the position p after noon the Sun stands p deg from z toward x, and a turn by p about
+        y takes z there."""
+        self.write("bay.toml", BAY.replace('name = "box"\n', 'name = "box"\njoint = "array"\n') +
+                   '[[joint]]\nname = "array"\npivot = [0, 0, 0.3]\naxis = [0, 1, 0]\nfollows = "sun"\nnormal = [0, 0, 1]\n')
+        self.write("study.toml", 'format = 1\nscene = "bay.toml"\ncameras = ["B"]\nsize = "12x12"\ntargets = ["box"]\n'
+                   '[orbit]\npositions_deg = [0, 40, 320]\n')
+        study = self.json("study", "run", "study.toml", "-o", "out")
+        self.assertEqual([(c["position_deg"], c["pose"]) for c in study["conditions"]],
+                         [(0, "array 0 deg"), (40, "array 40 deg"), (320, "array -40 deg")])
+        column = study["results"]["columns"].index("pixels")
+        seen = {}
+        for angle in (40, -40):
+            still = BAY.replace('name = "box"\n', 'name = "box"\njoint = "array"\n') + (
+                f'[[joint]]\nname = "array"\npivot = [0, 0, 0.3]\naxis = [0, 1, 0]\nangle_deg = {angle}\n')
+            self.write("still.toml", still)
+            self.write("there.toml", 'format = 1\nscene = "still.toml"\ncameras = ["B"]\nsize = "12x12"\ntargets = ["box"]\n'
+                       f'[orbit]\npositions_deg = [{angle % 360}]\n')
+            there = self.json("study", "run", "there.toml", "-o", f"there{angle}")
+            seen[angle] = there["results"]["rows"][0][column]
+        self.assertEqual([row[column] for row in study["results"]["rows"]][1:], [seen[40], seen[-40]])
+
     def test_a_camera_inside_a_body_at_one_pose_is_skipped_there(self):
         """The box swings over the camera D from 12:11 on; A looks at it from outside all the time."""
         camera = '[[camera]]\nname = "D"\nposition = [0, 1, 0.3]\nlook_at = [0, 0, 0.3]\nup = [0, 0, 1]\nfov_deg = 50\nresolution = [12, 12]\n'

@@ -6,6 +6,8 @@
 
 #include "base/files/exr_file.h"
 #include "base/files/png_file.h"
+#include "scenes/effects/effects.h"
+#include "scenes/effects/light_groups.h"
 #include "scenes/sky/airglow.h"
 #include "scenes/sky/albedo_grid.h"
 #include "scenes/sky/moon.h"
@@ -258,6 +260,14 @@ TEST(Airglow, LightsAPlateAsAnEvenDiscAndIsOffByDay) {
   EXPECT_NEAR(on_plate.g, base::pi * 0.001 * sine * sine, 1e-12);
   for (const Lamp& lamp : day.lamps) EXPECT_EQ(lamp.illuminance_lx, Rgb(0.0));
   EXPECT_TRUE(test::holds(folder.refusal("format = 1\n[airglow]\n"), {"[airglow]", "[earth]"}));
+  const auto reason = [](const Scene& of) {
+    for (const EffectRow& row : describe_effects(of, find_light_groups(of), {})) {
+      if (row.effect == "distant lamps") return row.reason;
+    }
+    return std::string();
+  };
+  EXPECT_TRUE(test::holds(reason(day), {"0 of 16", "airglow is off", "the Sun lights"}));
+  EXPECT_EQ(reason(dark), "16 of 16 with type = \"distant\" are lit");
 }
 
 }  // namespace
