@@ -4,9 +4,9 @@
     blender -b --factory-startup --python-exit-code 1 --python cycles_scene.py -- \\
         SCENE.toml OUT.exr SAMPLES SEED
 
-Reads the part of the format that the comparison needs: OBJ meshes by part, diffuse and emitting
-materials, the uniform Earth, one pinhole camera. Anything else is refused, so that the two programs
-never render different scenes.
+Reads the part of the format that the comparison needs: OBJ meshes, whole or by part, diffuse and
+emitting materials, the Sun, the uniform Earth, one pinhole camera. Anything else is refused, so that
+the two programs never render different scenes.
 """
 import math
 import pathlib
@@ -17,9 +17,10 @@ import bpy
 import mathutils
 
 KEYS = {
-    "": {"format", "name", "unit", "material", "object", "earth", "camera"},
+    "": {"format", "name", "unit", "material", "object", "sun", "earth", "camera"},
     "material": {"name", "diffuse", "emit", "two_sided"},
     "object": {"name", "mesh", "part", "material"},
+    "sun": {"direction", "illuminance", "angular_radius_deg"},
     "earth": {"direction", "model", "radiance", "half_angle_deg"},
     "camera": {"name", "position", "look_at", "up", "fov_deg", "resolution"},
 }
@@ -36,7 +37,7 @@ def colour(value):
 
 
 def read_part(path, part):
-    """Vertices of the file, and the polygons of all groups of this name."""
+    """Vertices of the file, and the polygons of all groups of this name; None: of the whole file."""
     vertices, polygons, group = [], [], ""
     for line in path.read_text(encoding="utf-8").splitlines():
         words = line.split()
@@ -46,7 +47,7 @@ def read_part(path, part):
             vertices.append(tuple(map(float, words[1:4])))
         elif words[0] in ("g", "o"):
             group = words[1]
-        elif words[0] == "f" and group == part:
+        elif words[0] == "f" and part in (None, group):
             polygons.append([int(word.split("/")[0]) - 1 for word in words[1:]])
     if not polygons:
         sys.exit(f"{path}: no part {part}")
@@ -80,10 +81,22 @@ def make_objects(scene, folder):
     materials = {table["name"]: make_material(table) for table in scene["material"]}
     for table in scene["object"]:
         mesh = bpy.data.meshes.new(table["name"])
-        vertices, polygons = read_part(folder / table["mesh"], table["part"])
+        vertices, polygons = read_part(folder / table["mesh"], table.get("part"))
         mesh.from_pydata(vertices, [], polygons)
         mesh.materials.append(materials[table["material"]])
         bpy.context.collection.objects.link(bpy.data.objects.new(table["name"], mesh))
+
+
+def make_sun(table):
+    data = bpy.data.lights.new("sun", "SUN")
+    light = colour(table.get("illuminance", 133100.0))
+    data.energy = max(light)  # irradiance of a plate that faces it
+    data.color = [c / max(light) for c in light]
+    data.angle = math.radians(2.0 * table.get("angular_radius_deg", 0.2666))
+    sun = bpy.data.objects.new("sun", data)
+    sun.rotation_mode = "QUATERNION"
+    sun.rotation_quaternion = mathutils.Vector(table["direction"]).to_track_quat("Z", "Y")
+    bpy.context.collection.objects.link(sun)
 
 
 def make_world(earth):
@@ -126,7 +139,7 @@ def make_camera(table):
     data.lens = 12.0 / math.tan(math.radians(table["fov_deg"]) / 2.0)
     data.clip_start, data.clip_end = 1e-4, 1e6
     camera = bpy.data.objects.new(table["name"], data)
-    position, look_at, up = (mathutils.Vector(table[k]) for k in ("position", "look_at", "up"))
+    position, look_at, up = (mathutils.Vector(v) for v in (table["position"], table["look_at"], table.get("up", (0, 0, 1))))
     back = (position - look_at).normalized()
     right = up.cross(back).normalized()
     axes = mathutils.Matrix((right, back.cross(right), back)).transposed()
@@ -168,12 +181,16 @@ def main(scene_path, out, samples, seed):
     for kind in ("material", "object", "camera"):
         for table in scene[kind]:
             check_keys(table, kind)
+    if "sun" in scene:
+        check_keys(scene["sun"], "sun")
     if "earth" in scene:
         check_keys(scene["earth"], "earth")
-    if scene["unit"] != "m":
+    if scene.get("unit", "m") != "m":
         sys.exit("only metres are known to the Cycles side")
     bpy.ops.wm.read_factory_settings(use_empty=True)
     make_objects(scene, path.parent)
+    if "sun" in scene:
+        make_sun(scene["sun"])
     make_world(scene.get("earth"))
     camera = scene["camera"][0]
     make_camera(camera)
