@@ -198,6 +198,27 @@ class Dataset(program.Case):
         self.assertEqual(before, (self.folder / "parts/images/000003.json").stat().st_mtime_ns)  # not drawn again
         self.assertEqual(self.files("out"), self.files("parts"))
 
+    def test_motion_is_in_the_pictures_and_labels_are_of_one_instant(self):
+        """The picture of a moving target is that of `render` with what was drawn; the labels are those of the still
+        target, which is where it is in the middle of the exposure of the middle row."""
+        drawn = {}
+        for name, motion, shutter in (("still", "", ""), ("moving", "velocity = [30, 0, 40]\nspin = [0, 90, 0]\n", "exposure_s = 0.5\nline_s = 0.01\n")):
+            self.write("a.toml", SCENE.replace('name = "cube"\n', 'name = "cube"\n' + motion) + shutter)
+            self.done("dataset", "set.toml", "-o", name, "-q", "--images", "2")
+            drawn[name] = json.loads((self.folder / f"{name}/images/000002.json").read_text())
+        for key in ("scene_camera", "scene_gt", "scene_gt_info", "annotations"):
+            self.assertEqual(drawn["moving"][key], drawn["still"][key], key)
+        pose, sets = drawn["moving"]["drawn"]["camera"], drawn["moving"]["drawn"]["set"]
+        for key, unit in (("position", 100), ("look_at", 100), ("up", 1)):
+            sets.append(f"camera.A.{key}={[unit * x for x in pose[key + ('' if key == 'up' else '_m')]]}")
+        self.done("render", "a.toml", "--camera", "A", "--aov", "object,depth,normal", "--seed", str(drawn["moving"]["drawn"]["seed"]),
+                  "-o", "own.exr", "-q", *(word for one in sets for word in ("--set", one)))
+        pictures = [exr.read(self.folder / file)[3] for file in ("own.exr", "moving/images/000002.exr", "still/images/000002.exr")]
+        self.assertEqual(pictures[0], pictures[1])
+        for layer in ("Z", "object"):
+            self.assertEqual(pictures[1][layer], pictures[2][layer])
+        self.assertNotEqual(pictures[1]["R"], pictures[2]["R"])
+
     def test_targets_are_judged_as_a_study_judges_them(self):
         """The same scene and pose in `study visibility`: what depends on geometry alone is equal. Both pictures have a
         stated error of at most 2 %, independent of each other, so that means over a target, whose noise is at most

@@ -1,9 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# install_check.sh SUITE...: installs the Debian packages in a clean chroot of each suite and runs them. Packages are
-# installed where they were built: in this machine's own suite from out/. For another suite the chroot builds them first
-# from the committed sources, which takes as long as a build. Needs root, mmdebstrap, and apt sources of Debian on this
-# machine, whose mirror serves all suites.
+# install_check.sh SUITE...: installs the Debian packages of out/ in a clean chroot of each suite and runs them. In a
+# suite with other versions of the libraries they cannot be installed; the chroot builds its own from the committed
+# sources, which takes as long as a build. Needs root, mmdebstrap, and an apt source of Debian on this machine, whose
+# mirror serves all suites.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 top=$PWD
@@ -17,26 +17,49 @@ mirror=$(apt-get indextargets --format '$(LABEL) $(CODENAME) $(SITE)' 'Created-B
 folder=$(mktemp -d)
 trap 'rm -rf --one-file-system "$folder"' EXIT
 
-# inside COMMAND: in the chroot, where services do not start and the locale is C.
-inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive sh -euc "$1"; }
+# inside COMMAND: in the chroot, with its own /proc, where services do not start and the locale is C.
+inside() {
+  unshare --mount sh -euc 'mount -t proc proc "$0/proc"; exec chroot "$0" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin \
+    HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive sh -euc "$1"' "$root" "$1"
+}
+# silently COMMAND...: its output goes to the log, of which the end is shown if the command fails.
+silently() { "$@" >>"$log" 2>&1 || { tail -n 40 "$log" >&2; say "failed; all output is in $log"; exit 1; }; }
 
-for suite in "$@"; do
-  root=$folder/$suite
-  say "$suite: a minimal system"
-  mmdebstrap --mode=root --variant=apt --quiet "$suite" "$root" "$mirror"
+# minimal_system FOLDER PACKAGES: a new chroot with these packages in /packages.
+minimal_system() {
+  root=$1
+  silently mmdebstrap --mode=root --variant=apt "$suite" "$root" "$mirror"
   cp /etc/resolv.conf "$root/etc/resolv.conf"
+  silently inside 'apt-get -q update'
   mkdir "$root/packages"
-  if [[ $suite == "$own" ]]; then
-    cp out/*.deb "$root/packages"
-  else
-    say "$suite: packages from the committed sources"
+  cp "$2"/*.deb "$root/packages"
+}
+
+install='apt-get -q install -y --no-install-recommends /packages/earthshine_*.deb /packages/python3-earthshine_*.deb'
+for suite in "$@"; do
+  log=$top/out/check-$suite.log
+  : >"$log"
+  say "$suite: a minimal system"
+  minimal_system "$folder/$suite" out
+  if ! inside "$install --simulate" >"$folder/refused" 2>&1; then
+    cat "$folder/refused" >>"$log"
+    if [[ $suite == "$own" ]]; then
+      cat "$folder/refused" >&2
+      say "$suite: packages that were built here cannot be installed"
+      exit 1
+    fi
+    say "$suite: other libraries than in $own: $(grep -m 1 -o 'Depends: .*' "$folder/refused")"
+    say "$suite: so packages are built from the committed sources, into out/$suite"
     mkdir "$root/source"
     git -C "$top" archive HEAD | tar -x -C "$root/source"
-    inside 'apt-get -qq install -y bash git >/dev/null; cd /source; git init -q; ./dev package >/dev/null; cp out/*.deb /packages'
+    silently inside 'apt-get -q install -y --no-install-recommends bash git; cd /source; git init -q; ./dev package'
+    mkdir -p "out/$suite"
+    cp "$root"/source/out/*.deb "out/$suite"
+    rm -rf --one-file-system "$root"
+    minimal_system "$folder/$suite-clean" "out/$suite"
   fi
   say "$suite: apt install, without recommended packages"
-  rm -rf "${root:?}/source"
-  inside 'apt-get -qq install -y --no-install-recommends /packages/earthshine_*.deb /packages/python3-earthshine_*.deb >/dev/null'
+  silently inside "$install"
   say "$suite: the program, its scenes and its module"
   inside '
     earthshine --version
@@ -55,8 +78,7 @@ frame.save("python.exr")
 assert frame.rgb.shape == (64, 64, 3) and frame.rgb.max() > 0
 TEXT
     cmp b.exr python.exr
-    apt-get -qq purge -y earthshine python3-earthshine >/dev/null
-    ! command -v earthshine >/dev/null
   '
+  silently inside 'apt-get -q purge -y earthshine python3-earthshine; ! command -v earthshine'
   say "$suite: installed, run and removed"
 done

@@ -52,6 +52,26 @@ class Scenes(program.Case):
         scene.objects["ball"].translate = (0.2, 0.1, 0)
         self.same_bytes(scene, scene.render("A", error=0.3), "--camera", "A", "--error", "0.3")
 
+    def test_motion_gives_the_bytes_of_the_program(self):
+        """Of a warm scene: a moving camera with a rolling shutter, then a moving body, drawn as a mean of instants that
+        each solve for themselves."""
+        scene = self.load()
+        still = scene.render("A", error=0.3)
+        camera, ball = scene.cameras["A"], scene.objects["ball"]
+        camera.exposure_s, camera.line_s, camera.velocity = 0.5, 0.005, (0.4, 0, 0)
+        moved = scene.render("A", error=0.3)
+        self.same_bytes(scene, moved, "--camera", "A", "--error", "0.3")
+        ball.velocity, ball.spin = (0, 0.3, 0), (0, 0, 30)
+        both = scene.render("A", error=0.3, layers=["depth"])
+        self.same_bytes(scene, both, "--camera", "A", "--error", "0.3", "--aov", "depth")
+        for one, other in ((still, moved), (moved, both)):
+            self.assertFalse(np.array_equal(one.rgb, other.rgb))
+        # A given solution holds the light of one instant.
+        with self.assertRaises(earthshine.Error) as refused:
+            scene.render("A", error=0.5, solution=scene.solve(error=0.5))
+        self.assertIn("solution", str(refused.exception))
+        self.assertIn("moves during the exposure", str(refused.exception))
+
     def test_only_what_changes_is_computed(self):
         scene = self.load()
         self.assertEqual(scene.work, {"read": 1, "structured": 1, "solved": 0, "drawn": 0})
