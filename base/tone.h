@@ -11,6 +11,17 @@ namespace earthshine::base {
 
 // sRGB transfer function of IEC 61966-2-1, rounded to 8 bits; linear is clamped to [0, 1].
 [[nodiscard]] std::uint8_t srgb_byte(double linear);
+// Its inverse for a signal in [0, 1].
+[[nodiscard]] double srgb_linear(double encoded);
+
+struct Grid {
+  int columns = 0, rows = 0;
+};
+// A picture of `channels` bytes a pixel, sRGB encoded, on another grid over the same area: each pixel
+// is the mean of the linear signal over its own area.
+[[nodiscard]] std::vector<std::uint8_t> resized_srgb(const std::vector<std::uint8_t>& bytes,
+                                                     std::size_t channels, const Grid& from,
+                                                     const Grid& to);
 
 // An exposure. Pictures for comparison by eye share one.
 struct ToneReport {

@@ -148,6 +148,7 @@ void fill_solution(const scenes::World& world, const FormFactors& factors, bool 
   gather_rows(solution.indirect_lx, copy_of(light.indirect));
 }
 
+// Groups with light from infinitely far away, which gives what lands.
 std::vector<bool> sky_groups(const scenes::World& world) {
   std::vector<bool> is_sky(world.groups.count(), false);
   const auto mark = [&](std::size_t first, std::size_t count) {
@@ -156,6 +157,9 @@ std::vector<bool> sky_groups(const scenes::World& world) {
   mark(world.groups.sun, 1);
   mark(world.groups.earth, scenes::earth_parts(world.scene));
   mark(world.groups.sun_parts, world.scene.sky_parts ? world.scene.sky_parts->suns.size() : 0);
+  for (std::size_t k = 0; k < world.scene.lamps.size(); ++k) {
+    if (world.scene.lamps[k].kind == scenes::LampKind::Distant) mark(world.groups.lamp[k], 1);
+  }
   return is_sky;
 }
 

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <sstream>
 
 #include "app/cctv/cctv.h"
 #include "app/cctv/degrade_list.h"
@@ -16,6 +17,7 @@
 #include "base/error.h"
 #include "base/files/exr_reader.h"
 #include "degrade/settings/radiance_file.h"
+#include "scenes/plausible/plausible.h"
 
 namespace earthshine::app {
 namespace {
@@ -140,6 +142,18 @@ struct Reader {
   }
 };
 
+void note_wide_pixels(const std::string& path, const base::ExrHeader& header) {
+  for (const auto& [name, value] : header.text) {
+    if (name != "earthshine:camera.K") continue;
+    double fx = 1.0, zero = 0.0, fy = 1.0;
+    std::istringstream words(value);
+    if (!(words >> fx >> zero >> zero >> zero >> fy)) continue;
+    if (const auto text = scenes::wide_pixels_warning(fx, fy)) {
+      note("warning: " + path + " " + *text);
+    }
+  }
+}
+
 // Vertical field of view: of the option, else of the scene's camera, else of the picture's header.
 double field_of_view(const DegradeCall& call, double of_scene, const base::ExrHeader& header) {
   if (call.fov_deg) return *call.fov_deg;
@@ -168,6 +182,7 @@ void run(const DegradeCall& call, const Common& common) {
   Reader reader;
   reader.quiet = common.quiet;
   const base::ExrHeader header = base::ExrReader(tape.front().inputs.front()).header();
+  if (!common.quiet) note_wide_pixels(tape.front().inputs.front(), header);
   CctvSetup setup = setup_for(call, common, header, tape);
   degrade::Options& options = setup.chain.options;
   options.off = call.off;

@@ -27,6 +27,7 @@
 #include "base/files/output_file.h"
 #include "base/files/png_file.h"
 #include "base/tone.h"
+#include "scenes/read/place_mesh.h"
 #include "scenes/read/scene_file.h"
 #include "scenes/text/message_text.h"
 #include "scenes/triangle_point.h"
@@ -118,7 +119,7 @@ class DataSet {
       throw base::Error(base::Blame::Input, "--seed", "has no effect on a data set", {},
                         "Set seed in " + recipe_.path.string());
     }
-    refuse_jointed_targets(scene);
+    model_joints_ = joints_of_targets(scene);
     key_ = {{"build", build_id()}};
     const fs::path here = fs::absolute(recipe_.path).parent_path();
     for (const fs::path& file : inputs) {
@@ -179,8 +180,11 @@ class DataSet {
     return known;
   }
   [[nodiscard]] std::vector<std::uint32_t> targets_in(const scenes::Scene& scene) const;
-  // Labels have the poses that the recipe draws, without those of joints.
-  void refuse_jointed_targets(const scenes::Scene& scene) const;
+  [[nodiscard]] std::vector<scenes::Pose> joints_of_targets(const scenes::Scene& scene) const;
+  // From the axes of the files in models/: what the joint, the drawn pose and, backward, the joint
+  // of the model do.
+  [[nodiscard]] std::vector<scenes::Pose> model_to_scene(const scenes::Scene& scene,
+                                                         const Draw& draw) const;
   void write_models(const scenes::Scene& scene) const;
   void place_camera(scenes::Scene& scene, const scenes::RayQuery& query, std::size_t image) const;
   void write_picture(const base::Image& picture, const Draw& draw,
@@ -191,6 +195,7 @@ class DataSet {
   Folder folder_;
   Json key_;
   std::size_t camera_ = 0;
+  std::vector<scenes::Pose> model_joints_;  // in the scene of models/
   KeptLights lights_;
 };
 
@@ -207,21 +212,31 @@ std::vector<std::uint32_t> DataSet::targets_in(const scenes::Scene& scene) const
   return objects;
 }
 
-void DataSet::refuse_jointed_targets(const scenes::Scene& scene) const {
-  const auto turns_joints = [](const Varied& varied) {
-    return varied.key.starts_with("joint.") || varied.key.starts_with("track.");
-  };
-  const bool varies = std::ranges::any_of(recipe_.varied, turns_joints);
-  const std::vector<std::uint32_t> objects = targets_in(scene);
-  for (std::size_t t = 0; t < objects.size(); ++t) {
-    const DrawnTarget& target = recipe_.targets[t];
-    const std::string& joint = scene.objects[objects[t]].joint;
-    if (joint.empty() || !(target.moves || varies)) continue;
-    throw base::Error(base::Blame::Input, recipe_.path.string(),
-                      fmt::format("[[target]] {} hangs on the joint {}",
-                                  scenes::in_quotes(target.name), scenes::in_quotes(joint)),
-                      "a target that moves has no joint", "Take its joint away in the scene");
+std::vector<scenes::Pose> DataSet::joints_of_targets(const scenes::Scene& scene) const {
+  std::vector<scenes::Pose> poses;
+  for (const std::uint32_t object : targets_in(scene)) {
+    const std::string& joint = scene.objects[object].joint;
+    poses.emplace_back();
+    if (joint.empty()) continue;
+    const auto found = std::ranges::find(scene.linkage->joints, joint, &scenes::Joint::name);
+    poses.back() =
+        scenes::joints_now(scene)[static_cast<std::size_t>(found - scene.linkage->joints.begin())]
+            .pose;
   }
+  return poses;
+}
+
+std::vector<scenes::Pose> DataSet::model_to_scene(const scenes::Scene& scene,
+                                                  const Draw& draw) const {
+  std::vector<scenes::Pose> poses = joints_of_targets(scene);
+  for (std::size_t t = 0; t < poses.size(); ++t) {
+    const glm::dmat3 back = glm::transpose(model_joints_[t].rotation);
+    poses[t] =
+        poses[t] *
+        scenes::Pose{scenes::rotation_xyz(draw.poses[t].rotate_deg), draw.poses[t].translate_m} *
+        scenes::Pose{back, -(back * model_joints_[t].offset_m)};
+  }
+  return poses;
 }
 
 void DataSet::write_models(const scenes::Scene& scene) const {
@@ -282,7 +297,15 @@ void DataSet::place_camera(scenes::Scene& scene, const scenes::RayQuery& query,
 void DataSet::write_picture(const base::Image& picture, const Draw& draw,
                             const std::optional<CctvSetup>& cctv, std::size_t image) const {
   const fs::path rgb = folder_.bop("rgb", image);
-  if (cctv) return write_cctv(rgb.string(), *cctv, run_chain(*cctv, picture));
+  if (cctv) {
+    degrade::Result shown = run_chain(*cctv, picture);
+    const auto channels = static_cast<std::size_t>(shown.channels);
+    shown.pixels = base::resized_srgb(shown.pixels, channels, {shown.columns, shown.rows},
+                                      {picture.width, picture.height});
+    shown.columns = picture.width;
+    shown.rows = picture.height;
+    return write_cctv(rgb.string(), *cctv, shown);
+  }
   const base::ToneMapped tone =
       draw.white_cd_m2 ? base::expose(picture, *draw.white_cd_m2, base::ToneCurve::Shoulder)
                        : base::tone_map(picture);
@@ -347,9 +370,13 @@ bool DataSet::make(std::size_t image) {
   record["columns"] = map.columns;
   record["rows"] = map.rows;
   record["error"] = error_json(drawn, loaded.scene.quality.error)["estimate"];
-  record.update(
-      labels_of({recipe_, draw, loaded.scene, query, model, map, depth_m, depth.scale_mm, image},
-                views, masks));
+  std::vector<studies::PixelsOutside> outside;
+  for (const std::uint32_t object : targets_in(loaded.scene)) {
+    outside.push_back(studies::pixels_outside(loaded.scene, camera, object, map.columns, map.rows));
+  }
+  record.update(labels_of({recipe_, loaded.scene, query, model, map, depth_m, depth.scale_mm, image,
+                           model_to_scene(loaded.scene, draw), std::move(outside)},
+                          views, masks));
   record["targets"] = sights_of(camera, picture, map, views, cctv);
   base::write_text(folder_.labels(image), dump_lines(record));
   return drawn.limit == raytrace::Limit::None;

@@ -64,6 +64,19 @@ std::array<double, 3> keypoint(const LabelCall& call, const Vec3& point) {
   return {film.x - 0.5, film.y - 0.5, hit.missed() || hit.t >= distance - slack ? 2.0 : 1.0};
 }
 
+// Around both.
+std::array<int, 4> box_with(const std::array<int, 4>& box, const studies::PixelsOutside& outside) {
+  if (outside.count == 0) return box;
+  int left = outside.left, right = outside.right, top = outside.top, bottom = outside.bottom;
+  if (box[2] > 0) {
+    left = std::min(left, box[0]);
+    top = std::min(top, box[1]);
+    right = std::max(right, box[0] + box[2] - 1);
+    bottom = std::max(bottom, box[1] + box[3] - 1);
+  }
+  return {left, top, right - left + 1, bottom - top + 1};
+}
+
 }  // namespace
 
 Masks masks_of(const studies::TargetView& view, const studies::ObjectMap& map) {
@@ -142,23 +155,24 @@ Json labels_of(const LabelCall& call, const std::vector<studies::TargetView>& vi
     labels[list] = Json::array();
   }
   for (std::size_t t = 0; t < views.size(); ++t) {
-    const Draw::Pose& pose = call.draw.poses[t];
-    const glm::dmat3 to_scene = scenes::rotation_xyz(pose.rotate_deg);
-    const Vec3 at = turn * pose.translate_m + shift;
-    labels["scene_gt"].push_back({{"cam_R_m2c", by_rows(turn * to_scene)},
+    const scenes::Pose& pose = call.model_to_scene[t];
+    const Vec3 at = turn * pose.offset_m + shift;
+    labels["scene_gt"].push_back({{"cam_R_m2c", by_rows(turn * pose.rotation)},
                                   {"cam_t_m2c", {mm * at.x, mm * at.y, mm * at.z}},
                                   {"obj_id", t + 1}});
     const auto count = [](const MaskPixels& mask) {
       return static_cast<std::size_t>(std::ranges::count(mask, std::uint8_t{255}));
     };
-    const std::size_t all = count(masks[t].whole), seen = count(masks[t].visible);
+    // The whole silhouette, also beyond the picture (bop_toolkit, scripts/calc_gt_info.py).
+    const std::size_t all = count(masks[t].whole) + call.outside[t].count;
+    const std::size_t seen = count(masks[t].visible);
     std::size_t valid = 0;
     for (std::size_t p = 0; p < masks[t].whole.size(); ++p) {
       valid += masks[t].whole[p] != 0 && std::isfinite(call.depth_m[p]) ? 1 : 0;
     }
     const auto visible_box = box_of(masks[t].visible, call.map.columns);
     labels["scene_gt_info"].push_back(
-        {{"bbox_obj", box_of(masks[t].whole, call.map.columns)},
+        {{"bbox_obj", box_with(box_of(masks[t].whole, call.map.columns), call.outside[t])},
          {"bbox_visib", visible_box},
          {"px_count_all", all},
          {"px_count_valid", valid},
@@ -179,7 +193,7 @@ Json labels_of(const LabelCall& call, const std::vector<studies::TargetView>& vi
       Json numbers = Json::array();
       std::size_t inside = 0;
       for (const KeyPoint& point : points) {
-        const auto [x, y, v] = keypoint(call, to_scene * point.position + pose.translate_m);
+        const auto [x, y, v] = keypoint(call, pose.point(point.position));
         inside += v > 0.0 ? 1 : 0;
         numbers.insert(numbers.end(), {x, y, static_cast<int>(v)});
       }

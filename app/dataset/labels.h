@@ -13,6 +13,7 @@
 #include "app/dataset/recipe.h"
 #include "raytrace/camera/camera.h"
 #include "scenes/ray_query.h"
+#include "scenes/time/linkage.h"
 #include "studies/targets/target_view.h"
 
 namespace earthshine::app {
@@ -40,7 +41,6 @@ struct Depth16 {
 
 struct LabelCall {
   const Recipe& recipe;
-  const Draw& draw;
   const scenes::Scene& scene;
   const scenes::RayQuery& query;
   const raytrace::CameraModel& camera;
@@ -48,6 +48,8 @@ struct LabelCall {
   const std::vector<float>& depth_m;
   double depth_scale_mm;
   std::size_t image;
+  std::vector<scenes::Pose> model_to_scene;     // of each target, m
+  std::vector<studies::PixelsOutside> outside;  // of each target
 };
 // {"scene_camera", "scene_gt", "scene_gt_info", "annotations"} of the image; masks come in the order
 // of scene_gt, which lists all targets.

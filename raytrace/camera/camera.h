@@ -56,6 +56,10 @@ struct CameraModel {
   // (lens_u, lens_v) in [0,1)^2 determine the point of the lens.
   [[nodiscard]] Ray ray(double x, double y, double lens_u, double lens_v) const;
 
+  // Width of a pixel by its height.
+  [[nodiscard]] double pixel_aspect() const {
+    return projection.half_width * rows / (projection.half_height * columns);
+  }
   // In the axes of the projection: x right, y down, z forward, from the position.
   [[nodiscard]] Vec3 to_camera(const Vec3& point) const;
   // Angle between neighbouring pixels toward a direction, rad; for a pinhole that on the axis.

@@ -159,7 +159,8 @@ class Rows {
     for (std::size_t k = 0; k < scene_.lamps.size(); ++k) {
       if (scene_.lamps[k].group != airglow_group) continue;
       if (groups_.lamp[k] == no_group) {
-        text += "; airglow is off: the Sun lights a part of the Earth in view, or its radiance is 0";
+        text +=
+            "; airglow is off: the Sun lights a part of the Earth in view, or its radiance is 0";
       }
       break;
     }

@@ -89,6 +89,15 @@ void name_darkness(const Scene& scene, Texts& found) {
 
 }  // namespace
 
+std::optional<std::string> wide_pixels_warning(double fx, double fy) {
+  if (std::abs(fx / fy - 1.0) <= 0.01) return std::nullopt;
+  return fmt::format(
+      "has pixels {:.4g} times as wide as high, and the CCTV chain shows them as squares; give fx "
+      "= "
+      "fy, and the number of columns that shows the same view",
+      fy / fx);
+}
+
 Texts implausible_input(const Scene& scene, const RayQuery& query, const SceneUse& use) {
   Texts found;
   const auto add = [&found](Texts more) {
@@ -106,6 +115,11 @@ Texts implausible_input(const Scene& scene, const RayQuery& query, const SceneUs
   for (const Camera* camera : cameras) views.push_back(look(scene, query, *camera, bounds));
   add(implausible_size(scene, views));
   add(implausible_views(scene, views));
+  for (const Camera* camera : cameras) {
+    if (camera->cctv.empty() || !camera->intrinsics) continue;
+    const auto text = wide_pixels_warning((*camera->intrinsics)[0], (*camera->intrinsics)[1]);
+    if (text) found.push_back(fmt::format("camera {} {}", in_quotes(camera->name), *text));
+  }
   name_empty_materials(scene, found);
   if (!use.lights) return found;
   name_height(scene, found);

@@ -3,6 +3,7 @@
 // nothing, a number in the wrong unit.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct SceneUse {
   bool moves_along_orbit = false;      // Sun and Earth move
   bool shows_facts = false;            // the output lists which lights shine
 };
+
+// Of pixels that are not square within 1 %, which a CCTV chain shows as squares; fx, fy: of K.
+[[nodiscard]] std::optional<std::string> wide_pixels_warning(double fx, double fy);
 
 // One line each, with a remedy; docs/scene-format.md lists them under "Warnings about likely
 // mistakes". Casts 576 rays per camera, and up to 512 for each lamp and each emitting object;

@@ -167,9 +167,15 @@ void InstanceReader::finish(Scene& scene, double unit_m, const JointPoses& joint
     const Placement placement = read_placement(table, unit_m, joints);
     const Placement& original = placed_.at(named);
     if (placement.is_mirrored() != original.is_mirrored()) {
-      table.fail("scale", "makes a mirror image of the original",
-                 "an instance is turned, moved and scaled alone",
-                 "Give the object a mesh or shape of its own, with that scale");
+      const auto text = [](const Vec3& s) {
+        return fmt::format("[{:g}, {:g}, {:g}]", s.x, s.y, s.z);
+      };
+      table.fail("scale",
+                 fmt::format("{} makes a mirror image of the original, whose scale is {}",
+                             text(placement.scale), text(original.scale)),
+                 "an instance, whose scale is [1, 1, 1] where none is given, has an even number of "
+                 "negative factors if its original has, and an odd number if that has",
+                 "Give it the original's scale, or a mesh or shape of its own");
     }
     instances.push_back(relation(object, original, placement));
     triangles += scene.objects[object].triangle_count;

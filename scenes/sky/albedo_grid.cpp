@@ -102,7 +102,15 @@ AlbedoGrid grid_of_map(const std::filesystem::path& path, int columns, int rows,
 
 AlbedoGrid read_exr_map(const std::filesystem::path& path, const base::Location& asked_at) {
   base::check_input_file(path, asked_at);
-  const base::Image image = base::read_exr(path).image;
+  const base::ExrFile file = base::read_exr(path);
+  const base::Image& image = file.image;
+  if (const auto& whole = file.header.whole; whole.columns > 0) {
+    throw Error(Blame::Input, path.string(),
+                fmt::format("stores {} x {} of its {} x {} pixels", image.width, image.height,
+                            whole.columns, whole.rows),
+                "a map of the albedo covers the whole Earth",
+                "Write it with its whole data window");
+  }
   const base::Channel* grey = image.channels.size() == 1 ? &image.channels[0] : image.find("Y");
   if (const base::Channel* red = image.find("R"); grey == nullptr && red != nullptr) {
     const base::Channel *green = image.find("G"), *blue = image.find("B");

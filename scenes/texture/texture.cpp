@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/numbers/digest.h"
 #include "base/parallel.h"
+#include "base/tone.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -17,16 +18,12 @@ namespace {
 constexpr double full = 65535.0;
 constexpr std::size_t texels_together = 65536;  // by one thread
 
-// IEC 61966-2-1.
-double linear(double encoded) {
-  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
-
 std::array<std::uint16_t, 256> decoding(bool is_srgb) {
   std::array<std::uint16_t, 256> table{};
   for (std::size_t k = 0; k < table.size(); ++k) {
     const double share = static_cast<double>(k) / 255.0;
-    table[k] = static_cast<std::uint16_t>(std::lround(full * (is_srgb ? linear(share) : share)));
+    table[k] = static_cast<std::uint16_t>(
+        std::lround(full * (is_srgb ? base::srgb_linear(share) : share)));
   }
   return table;
 }

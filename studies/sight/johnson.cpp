@@ -109,24 +109,30 @@ Probability johnson_probability(double cycles, const CyclesNeeded& needed) {
 
 Extent least_extent(const std::vector<std::uint32_t>& pixels, const scenes::Camera& camera,
                     int columns, int rows) {
-  const Strip strip = narrowest_strip(hull_of(corners_of(pixels, columns)));
+  const raytrace::CameraModel model = raytrace::make_camera_model(camera, columns, rows);
+  // Columns in heights of pixels, so that lengths compare in all directions.
+  const double aspect = model.pixel_aspect();
+  std::vector<Point> corners = corners_of(pixels, columns);
+  for (Point& corner : corners) corner[0] *= aspect;
+  const Strip strip = narrowest_strip(hull_of(std::move(corners)));
   Point centre{0.0, 0.0};
   for (const std::uint32_t pixel : pixels) {
     centre[0] += static_cast<double>(pixel % static_cast<std::uint32_t>(columns)) + 0.5;
     centre[1] += static_cast<double>(pixel / static_cast<std::uint32_t>(columns)) + 0.5;
   }
   const double count = static_cast<double>(pixels.size());
-  for (double& c : centre) c /= count;
-  const double disc = 2.0 * std::sqrt(count / base::pi);
+  centre[0] *= aspect / count;
+  centre[1] /= count;
+  const double disc = 2.0 * std::sqrt(count * aspect / base::pi);
   Extent extent;
   extent.pixels = std::min(strip.width, disc);
   extent.direction_rad = std::atan2(strip.normal[1], strip.normal[0]);
   double from = strip.low - (strip.normal[0] * centre[0] + strip.normal[1] * centre[1]);
   if (disc < strip.width) from = -0.5 * disc;
-  const raytrace::CameraModel model = raytrace::make_camera_model(camera, columns, rows);
   const auto toward = [&](double offset) {
     return model
-        .ray(centre[0] + offset * strip.normal[0], centre[1] + offset * strip.normal[1], 0.0, 0.0)
+        .ray((centre[0] + offset * strip.normal[0]) / aspect, centre[1] + offset * strip.normal[1],
+             0.0, 0.0)
         .direction;
   };
   const Vec3 a = toward(from), b = toward(from + extent.pixels);

@@ -28,7 +28,7 @@ struct CyclesNeeded {
 // or the diameter of a disc of equal area if that is less, so that a few scattered pixels do not
 // count as a large target.
 struct Extent {
-  double pixels = 0.0;
+  double pixels = 0.0;         // heights of a pixel
   double direction_rad = 0.0;  // of the extent, from the picture's x to its y (down)
   double angle_deg = 0.0;      // between the rays to its ends
 };

@@ -77,28 +77,32 @@ std::vector<std::uint32_t> surround_of(const ObjectMap& map,
 
 constexpr std::uint8_t shows_back = 2;  // in the mask of cast_alone; 1: any other of its surfaces
 
-// The pixels whose centre shows `object` without all others, and whether they show its black back.
-Mask cast_alone(const scenes::Scene& scene, const scenes::Camera& camera, std::uint32_t object,
-                int columns, int rows) {
+// The pixels of the window whose centre shows `object` without all others, and whether they show its
+// black back. Film goes on beyond the picture.
+Mask cast_alone(const scenes::Scene& scene, const raytrace::CameraModel& model,
+                std::uint32_t object, const raytrace::Window& window) {
   scenes::Scene alone;
   alone.vertices = scene.vertices;  // all vertices, so that rays have the same rounding as in the
                                     // whole scene
+  alone.vertex_uv = scene.vertex_uv;
+  for (const scenes::Material& material : scene.materials) {
+    alone.materials.emplace_back().maps = material.maps;  // a hole shows what is behind
+  }
   const scenes::Object& record = scene.objects[object];
   const auto first = scene.triangles.begin() + record.first_triangle;
   alone.triangles.assign(first, first + record.triangle_count);
-  Mask mask(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 0);
+  Mask mask(window.pixel_count(), 0);
   if (alone.triangles.empty()) return mask;
   const scenes::RayQuery query(alone);
-  const raytrace::CameraModel model = raytrace::make_camera_model(camera, columns, rows);
-  base::parallel_chunks(static_cast<std::size_t>(rows), 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y) {
-      for (int x = 0; x < columns; ++x) {
-        const raytrace::Ray ray = model.ray(x + 0.5, static_cast<double>(y) + 0.5, 0.0, 0.0);
+  const auto rows = static_cast<std::size_t>(window.rows);
+  base::parallel_chunks(rows, 8, [&](std::size_t begin, std::size_t end) {
+    for (int y = window.y + static_cast<int>(begin); y < window.y + static_cast<int>(end); ++y) {
+      for (int x = window.x; x < window.x + window.columns; ++x) {
+        const raytrace::Ray ray = model.ray(x + 0.5, y + 0.5, 0.0, 0.0);
         const scenes::Hit hit = query.closest(ray.origin, ray.direction);
         if (hit.missed()) continue;
         const scenes::Material& material = scene.materials[alone.triangles[hit.triangle].material];
-        mask[y * static_cast<std::size_t>(columns) + static_cast<std::size_t>(x)] =
-            !hit.front && material.has_black_back() ? shows_back : 1;
+        mask[window.index(x, y)] = !hit.front && material.has_black_back() ? shows_back : 1;
       }
     }
   });
@@ -203,12 +207,13 @@ TargetView find_target(const ObjectMap& map, std::uint32_t object) {
 
 std::vector<TargetView> find_targets(const scenes::Scene& scene, const scenes::Camera& camera,
                                      const ObjectMap& map) {
+  const raytrace::CameraModel model = raytrace::make_camera_model(camera, map.columns, map.rows);
   std::vector<TargetView> views;
   for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
     if (!scene.objects[object].target) continue;
     TargetView view = find_target(map, object);
     view.name = scene.objects[object].name;
-    Mask alone = cast_alone(scene, camera, object, map.columns, map.rows);
+    Mask alone = cast_alone(scene, model, object, {0, 0, map.columns, map.rows});
     // A rounding error may move a ray to the other side of a silhouette; seen pixels are always
     // part of `alone`.
     for (std::size_t i = 0; i < alone.size(); ++i) {
@@ -219,13 +224,43 @@ std::vector<TargetView> find_targets(const scenes::Scene& scene, const scenes::C
     view.pixels_alone =
         alone.size() - static_cast<std::size_t>(std::count(alone.begin(), alone.end(), 0));
     find_blockers(view, map, alone);
-    const raytrace::CameraModel model = raytrace::make_camera_model(camera, map.columns, map.rows);
     view.in_frame = view.pixels_alone > 0 || reaches_frame(scene, model, object);
     view.motion_px_s = motion_of(scene, model, object);
     view.cut_by_frame = touches_border(alone, map.columns, map.rows);
     views.push_back(std::move(view));
   }
   return views;
+}
+
+PixelsOutside pixels_outside(const scenes::Scene& scene, const scenes::Camera& camera,
+                             std::uint32_t object, int columns, int rows) {
+  PixelsOutside outside;
+  const raytrace::CameraModel model = raytrace::make_camera_model(camera, columns, rows);
+  const scenes::Object& record = scene.objects[object];
+  const auto shows = [&](const scenes::Triangle& triangle) {
+    return std::ranges::all_of(triangle.vertex, [&](std::uint32_t v) {
+      return model.projection.shows(model.to_camera(scene.vertices[v]));
+    });
+  };
+  const auto first = scene.triangles.begin() + record.first_triangle;
+  // A distorted picture's border is no convex set: its corners do not decide.
+  if (!model.projection.is_distorted() &&
+      std::all_of(first, first + record.triangle_count, shows)) {
+    return outside;
+  }
+  const raytrace::Window canvas{-columns, -rows, 3 * columns, 3 * rows};
+  const Mask alone = cast_alone(scene, model, object, canvas);
+  for (int y = canvas.y; y < canvas.y + canvas.rows; ++y) {
+    for (int x = canvas.x; x < canvas.x + canvas.columns; ++x) {
+      const bool inside = x >= 0 && x < columns && y >= 0 && y < rows;
+      if (inside || alone[canvas.index(x, y)] == 0) continue;
+      if (outside.count++ == 0) outside = {1, x, x, y, y};
+      outside.left = std::min(outside.left, x);
+      outside.right = std::max(outside.right, x);
+      outside.bottom = y;
+    }
+  }
+  return outside;
 }
 
 }  // namespace earthshine::studies

@@ -96,9 +96,18 @@ TEST(Ledger, SkyAndSurfacesCarriedByFGiveWhatLandsAndWhatTheyEmit) {
   sun.direction = Vec3(std::sqrt(0.75), 0, 0.5);
   sun.angular_radius_deg = 0.0;
   builder.scene.sun = sun;
+  // From 60 degrees too: half of its illuminance on both.
+  scenes::Lamp distant;
+  distant.name = distant.group = "distant";
+  distant.kind = scenes::LampKind::Distant;
+  distant.axis = -Vec3(0, std::sqrt(0.75), 0.5);
+  distant.illuminance_lx = Rgb(14.0);
+  builder.scene.lamps.push_back(distant);
+  const auto given = [](const std::string& name) {
+    return name == "distant" ? 14.0 : name == "shining" ? 10.0 : 133100.0;
+  };
   for (const GroupLedger& line : solve_at(builder.scene, 0.5).report.groups) {
-    const bool is_sun = line.name != "shining";
-    EXPECT_NEAR(line.given_lm.g / (is_sun ? 133100.0 : 10.0), 1.0, 1e-12) << line.name;
+    EXPECT_NEAR(line.given_lm.g / given(line.name), 1.0, 1e-12) << line.name;
     EXPECT_EQ(line.escaped_at_once_lm.g, 0.0);
     EXPECT_EQ(line.lost_at_once_lm.g, 0.0);
     expect_closed(line);

@@ -183,6 +183,17 @@ TEST(Plausible, AFieldInRadiansIsNamed) {
   expect_none(with("0.1", 2.0));
 }
 
+TEST(Plausible, WidePixelsOfACctvCameraAreNamed) {
+  const auto with = [](const std::string& fx, const std::string& more) {
+    return materials + plate("floor", 2, 0) + point_lamp("[0, 0, 2]") +
+           camera_at("[0.4, 0.3, 3]", "[0, 0, 0]", "fx = " + fx + "\nfy = 20\n" + more);
+  };
+  const std::string cctv = "cctv = \"plain\"\n[[cctv]]\nname = \"plain\"\n";
+  expect_one(with("16", cctv), {"\"A\"", "1.25 times as wide as high", "fx = fy"});
+  expect_none(with("20.1", cctv));
+  expect_none(with("16", ""));
+}
+
 // A bay of 12 m whose unit is "mm".
 TEST(Plausible, ABayOfMillimetresIsNamed) {
   const auto scaled = [](double scale) {

@@ -222,6 +222,9 @@ TEST(AlbedoGridFile, BadMapsAreRefused) {
   image.channels.clear();
   for (const char* name : {"R", "G", "B"}) image.add(name)[0] = name[0] == 'R' ? 1.0F : 0.5F;
   base::write_exr(folder.path() / "red.exr", image);
+  base::ExrHeader part;
+  part.whole = {image.width, image.height + 1, 0, 0};
+  base::write_exr(folder.path() / "part.exr", image, part);
   const struct {
     const char* file;
     std::vector<std::string> says;
@@ -230,6 +233,7 @@ TEST(AlbedoGridFile, BadMapsAreRefused) {
              {"text.png", {"text.png", "broken PNG"}},
              {"high.exr", {"high.exr", "1.5 at column 1, row 0", "from 0 to 1"}},
              {"red.exr", {"red.exr", "channels", "equal"}},
+             {"part.exr", {"part.exr", "whole Earth"}},
              {"none.exr", {"none.exr"}}};
   for (const auto& one : bad) {
     try {

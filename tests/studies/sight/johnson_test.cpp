@@ -102,6 +102,21 @@ TEST(LeastExtent, AngleIsThatBetweenTheRaysToItsEnds) {
               1e-9);
 }
 
+// A plate of 50 columns by 40 rows with fx = 500 and fy = 200 is 0.1 wide and 0.2 high at unit
+// distance: its width is the shorter side, 0.1 * 200 heights of a pixel.
+TEST(LeastExtent, ComparesLengthsInTheScene) {
+  scenes::Camera camera = camera_of_40_deg();
+  camera.columns = 200;
+  camera.rows = 100;
+  camera.intrinsics = {500.0, 200.0, 100.0, 50.0};
+  const auto plate =
+      pixels_of([](double x, double y) { return std::abs(x) < 25 && std::abs(y) < 20; });
+  const Extent extent = least_extent(plate, camera, 200, 100);
+  EXPECT_NEAR(extent.pixels, 20.0, 1e-9);
+  EXPECT_NEAR(std::abs(std::cos(extent.direction_rad)), 1.0, 1e-12);
+  EXPECT_NEAR(extent.angle_deg, base::degrees(2.0 * std::atan(0.05)), 1e-9);
+}
+
 TEST(Eye, ThresholdsAreThoseOfThePublishedLaw) {
   // x = 2: 10^(2 - 1.255); x = -5: 10^-2.86; x = -1: rods, 10^(-1 - 0.395); x = 0: cones,
   // 0.65^2.7 - 0.72 = -0.40749.

@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/pixels/pixels.h"
+#include "scenes/texture/texture.h"
 #include "tests/studies/plates.h"
 
 namespace earthshine::studies {
@@ -184,6 +186,39 @@ TEST(TargetView, MotionIsThatOfTheMiddleAcrossThePicture) {
 
 TEST(TargetView, PictureWithoutObjectsIsRefused) {
   EXPECT_THROW((void)object_map(base::make_rgb_image(2, 2)), base::Error);
+}
+
+// The plate has a hole over x < 0: one texel opaque, one clear. The ground behind it hides nothing.
+TEST(TargetView, HolesShowWhatIsBehindAndHideNothing) {
+  tests::SceneBuilder builder = tests::plate_on_ground(0.2, 0.5);
+  scenes::Scene& scene = builder.scene;
+  scenes::MaterialMaps maps;
+  const base::Pixels clear_and_opaque{2, 1, {0, 0, 0, 0, 0, 0, 0, 255}};
+  maps.opacity.texture =
+      std::make_shared<const scenes::Texture>(clear_and_opaque, scenes::TextureReading());
+  maps.opacity.transform = std::make_shared<const scenes::TextureTransform>();
+  scene.materials[1].maps = std::make_shared<const scenes::MaterialMaps>(maps);
+  for (const Vec3& v : scene.vertices) {
+    scene.vertex_uv.emplace_back(static_cast<float>(v.x + 0.5), static_cast<float>(v.y + 0.5));
+  }
+  const TargetView view = only_target(scene, tests::above(2.0, 2.0), 32);
+  EXPECT_EQ(view.pixels, 8U * 16U);
+  EXPECT_EQ(view.pixels_alone, view.pixels);
+  EXPECT_TRUE(view.hidden_by.empty());
+}
+
+// A plate 1 m wide around the origin, of which the picture's 2 m show what lies beyond x = 1.2 of the
+// camera's axis: 32 pixels for 2 m, 16 for the plate. The axis is over x = 1.2, so that the plate's
+// columns are from (-0.5 - 1.2 + 1) * 16 = -11.2 to 4.8; its rows are 8 to 24.
+TEST(TargetView, PixelsOutsideAreThoseOfTheFilmBeyondThePicture) {
+  const tests::SceneBuilder builder = tests::plate_on_ground(0.2, 0.5);
+  scenes::Camera camera = tests::above(2.0, 2.0);
+  camera.position.x = camera.look_at.x = 1.2;
+  const PixelsOutside found = pixels_outside(builder.scene, camera, 1, 32, 32);
+  EXPECT_EQ(found.count, 11U * 16U);
+  EXPECT_EQ((std::array{found.left, found.right, found.top, found.bottom}),
+            (std::array{-11, -1, 8, 23}));
+  EXPECT_EQ(pixels_outside(builder.scene, tests::above(2.0, 2.0), 1, 32, 32).count, 0U);
 }
 
 }  // namespace
