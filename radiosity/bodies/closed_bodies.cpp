@@ -6,6 +6,9 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <numeric>
+#include <ranges>
+#include <utility>
 
 #include "radiosity/bodies/closed_parts.h"
 #include "scenes/light/lamp_light.h"
@@ -53,25 +56,28 @@ ClosedSurface::ClosedSurface(std::span<const Vec3> corners)
   cells_ = static_cast<std::size_t>(std::clamp(std::sqrt(double(count)), 1.0, most_cells));
   corner_ = turned(low_);
   cell_size_ = glm::max(turned(size) / double(cells_), Vec3(std::numeric_limits<double>::min()));
-  std::vector<std::vector<std::uint32_t>> lists(cells_ * cells_);
+  // By descending extent, and each cell's triangles in this order.
+  std::vector<std::pair<double, std::uint32_t>> order;
   for (std::uint32_t k = 0; k < count; ++k) {
     const Corners& t = triangles_[k];
-    const Vec3 low = glm::min(t.a, glm::min(t.b, t.c)), high = glm::max(t.a, glm::max(t.b, t.c));
-    for (std::size_t i = cell(low.x, 0); i <= cell(high.x, 0); ++i) {
-      for (std::size_t j = cell(low.y, 1); j <= cell(high.y, 1); ++j) {
-        lists[i * cells_ + j].push_back(k);
-      }
-    }
+    order.emplace_back(-std::max({t.a.z, t.b.z, t.c.z}), k);
   }
-  const auto top = [&](std::uint32_t k) {
+  std::ranges::sort(order);
+  const auto each_cell = [&](std::uint32_t k, const auto& visit) {
     const Corners& t = triangles_[k];
-    return std::max({t.a.z, t.b.z, t.c.z});
+    const Vec3 low = glm::min(t.a, glm::min(t.b, t.c)), high = glm::max(t.a, glm::max(t.b, t.c));
+    const std::size_t last_i = cell(high.x, 0), first_j = cell(low.y, 1), last_j = cell(high.y, 1);
+    for (std::size_t i = cell(low.x, 0); i <= last_i; ++i) {
+      for (std::size_t j = first_j; j <= last_j; ++j) visit(i * cells_ + j);
+    }
   };
-  first_.push_back(0);
-  for (std::vector<std::uint32_t>& list : lists) {
-    std::ranges::sort(list, std::greater(), top);
-    of_cell_.insert(of_cell_.end(), list.begin(), list.end());
-    first_.push_back(static_cast<std::uint32_t>(of_cell_.size()));
+  first_.assign(cells_ * cells_ + 1, 0);
+  for (std::uint32_t k = 0; k < count; ++k) each_cell(k, [&](std::size_t at) { ++first_[at]; });
+  // Ends of the cells, which filling from the back turns into their beginnings.
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  of_cell_.resize(first_.back());
+  for (const auto& [top, k] : order | std::views::reverse) {
+    each_cell(k, [&](std::size_t at) { of_cell_[--first_[at]] = k; });
   }
 }
 

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "base/parallel.h"
+#include "scenes/health/topology.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -27,28 +28,8 @@ struct Side {
   std::uint32_t low = 0, high = 0, triangle = 0;
 };
 
-// Vertices of equal coordinates get the number of the first of them in sorted order.
-std::vector<std::uint32_t> weld(const std::vector<Vec3>& vertices) {
-  std::vector<std::uint32_t> order(vertices.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-  const auto key = [&](std::uint32_t i) {
-    // Adding 0 turns -0 into 0.
-    const Vec3 p = vertices[i] + 0.0;
-    return std::tuple(p.x, p.y, p.z);
-  };
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::tuple_cat(key(a), std::tuple(a)) < std::tuple_cat(key(b), std::tuple(b));
-  });
-  std::vector<std::uint32_t> welded(vertices.size());
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const bool same = k > 0 && key(order[k]) == key(order[k - 1]);
-    welded[order[k]] = same ? welded[order[k - 1]] : order[k];
-  }
-  return welded;
-}
-
 std::vector<Side> sides_of(const scenes::Scene& scene) {
-  const std::vector<std::uint32_t> welded = weld(scene.vertices);
+  const std::vector<std::uint32_t> welded = scenes::welded(scene.vertices);
   std::vector<Side> sides;
   sides.reserve(3 * scene.triangles.size());
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {

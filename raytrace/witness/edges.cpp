@@ -2,9 +2,9 @@
 #include "raytrace/witness/edges.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "scenes/health/topology.h"
 #include "scenes/ray_query.h"
 
 namespace earthshine::raytrace {
@@ -13,24 +13,6 @@ namespace {
 // Cosine between the normals of coplanar triangles.
 constexpr double same_plane = 1.0 - 1e-9;
 
-// Gives vertices at the same position one number.
-std::vector<std::uint32_t> welded(const scenes::Scene& scene) {
-  std::vector<std::uint32_t> order(scene.vertices.size()), number(order.size());
-  for (std::uint32_t k = 0; k < order.size(); ++k) order[k] = k;
-  const auto key = [&](std::uint32_t k) {
-    const Vec3& p = scene.vertices[k];
-    return std::array{p.x, p.y, p.z};
-  };
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t p, std::uint32_t q) { return key(p) < key(q); });
-  std::uint32_t last = 0;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    if (k == 0 || key(order[k]) != key(order[k - 1])) last = order[k];
-    number[order[k]] = last;
-  }
-  return number;
-}
-
 }  // namespace
 
 std::vector<SceneEdge> find_edges(const scenes::Scene& scene) {
@@ -38,7 +20,7 @@ std::vector<SceneEdge> find_edges(const scenes::Scene& scene) {
     std::uint64_t key;
     std::uint32_t triangle;
   };
-  const std::vector<std::uint32_t> number = welded(scene);
+  const std::vector<std::uint32_t> number = scenes::welded(scene.vertices);
   std::vector<Side> sides;
   sides.reserve(3 * scene.triangles.size());
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
