@@ -19,12 +19,21 @@ Json moment_text(const std::optional<Instant>& t) {
   return t ? Json(scenes::utc_text(*t)) : Json();
 }
 
-// Over [time], or one revolution from the scene's time, within the states.
+// [time], or one revolution from the scene's time; of an orbit without a period all states from
+// there on.
+Instant end_of_eclipses(const scenes::Mission& mission, Instant start) {
+  Instant stop = std::max(mission.time.stop, start);
+  if (!mission.has_span) {
+    const auto period_s = scenes::period_at(mission, start);
+    stop = period_s ? start + *period_s : mission.trajectory->last();
+  }
+  return std::min(stop, start + longest_eclipse_span_s);
+}
+
+// Within the states.
 Json eclipses_of(const scenes::Scene& scene, const scenes::Mission& mission) {
   const Instant start = mission.has_span ? mission.time.start : mission.moment;
-  const Instant stop = mission.has_span ? std::min(std::max(mission.time.stop, start),
-                                                   start + longest_eclipse_span_s)
-                                        : start + scenes::period_at(mission, start);
+  const Instant stop = end_of_eclipses(mission, start);
   Json list = Json::array();
   for (const scenes::TrajectorySegment& segment : mission.trajectory->segments) {
     const Instant from = std::max(start, segment.first_useful);
@@ -51,6 +60,7 @@ Json mission_facts(const scenes::Scene& scene) {
   const scenes::Trajectory& trajectory = *mission->trajectory;
   const Instant start = mission->moment;
   const scenes::MissionState state = scenes::mission_state(*mission, start);
+  const auto period_s = scenes::period_at(*mission, start);
   Json segments = Json::array();
   for (const scenes::TrajectorySegment& segment : trajectory.segments) {
     segments.push_back({{"start", scenes::utc_text(segment.first_useful)},
@@ -72,7 +82,7 @@ Json mission_facts(const scenes::Scene& scene) {
           {"longitude_deg", state.below.longitude_deg},
           {"height_m", state.below.height_m},
           {"distance_m", state.distance_m},
-          {"period_s", scenes::period_at(*mission, start)},
+          {"period_s", period_s ? Json(*period_s) : Json()},
           {"beta_deg", state.beta_deg},
           {"position_deg", state.position_deg},
           {"attitude", mission->history ? Json() : Json(mission->attitude)},
@@ -91,10 +101,13 @@ std::string mission_lines(const Json& facts) {
   }
   text += fmt::format(
       "at {}: over latitude {:.4f}, longitude {:.4f} deg, {:.2f} km high; beta {:.3f} deg, orbit "
-      "{:.2f} deg from noon\n",
+      "{:.2f} deg from noon, {}\n",
       facts["utc"], facts["latitude_deg"].get<double>(), facts["longitude_deg"].get<double>(),
       facts["height_m"].get<double>() / 1e3, facts["beta_deg"].get<double>(),
-      facts["position_deg"].get<double>());
+      facts["position_deg"].get<double>(),
+      facts["period_s"].is_null()
+          ? "no period: a parabola or hyperbola"
+          : fmt::format("period {:.2f} min", facts["period_s"].get<double>() / 60.0));
   if (!facts["attitude_file"].is_null()) {
     text += fmt::format("attitude: {}, from {}\n", facts["attitude_file"], facts["attitude_frame"]);
   } else {

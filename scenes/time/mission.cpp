@@ -15,6 +15,9 @@ namespace {
 constexpr double earth_equator_m = 6378137.0, earth_flattening = 1.0 / 298.257223563;
 constexpr double eclipse_step_s = 15.0;
 constexpr double eclipse_error_s = 1e-3;
+// Of sqrt(r^3 / GM). A fall from r to the centre takes sqrt(2) / 3 of it at least, so that a step on
+// an ellipse ends beyond r / 2, and goes less than half a revolution.
+constexpr double longest_step_share = 0.3;
 
 // Unit vectors in GCRS.
 struct LocalFrame {
@@ -214,8 +217,40 @@ std::vector<EclipseTimes> eclipses_between(const Mission& mission, Instant from,
   return found;
 }
 
-double period_at(const Mission& mission, Instant t) {
-  return orbit_period_s(glm::length(mission.trajectory->at(t).position_m) - base::earth_radius_m);
+std::optional<double> period_at(const Mission& mission, Instant t) {
+  const State state = mission.trajectory->at(t);
+  // 1 / a by vis-viva: v^2 = GM (2 / r - 1 / a).
+  const double per_m = 2.0 / glm::length(state.position_m) -
+                       glm::dot(state.velocity_m_s, state.velocity_m_s) / earth_gm_m3_s2;
+  if (!(per_m > 0.0)) return std::nullopt;
+  return 2.0 * base::pi / (per_m * std::sqrt(per_m * earth_gm_m3_s2));
+}
+
+double revolved_deg(const Mission& mission, Instant from, Instant to) {
+  const Trajectory& trajectory = *mission.trajectory;
+  double revolved = 0.0;
+  for (Instant t = from; t < to;) {
+    const State before = trajectory.at(t);
+    const double r = glm::length(before.position_m);
+    const double step = std::min(trajectory.longest_gap_s(t),
+                                 longest_step_share * r * std::sqrt(r / earth_gm_m3_s2));
+    const Instant wanted = std::min(t + step, to), next = trajectory.next_state(wanted);
+    double angle =
+        base::degrees(angle_between(glm::normalize(before.position_m),
+                                    glm::normalize(trajectory.at(next).position_m)));
+    if (next > wanted) {
+      const Vec3 ahead = glm::cross(before.position_m, trajectory.at(next).position_m);
+      if (glm::dot(ahead, glm::cross(before.position_m, before.velocity_m_s)) < 0.0) {
+        angle = 360.0 - angle;
+      }
+      const auto period = period_at(mission, t);
+      const double expected = period ? 360.0 * (next - t) / *period : angle;
+      angle = expected + std::remainder(angle - expected, 360.0);
+    }
+    revolved += angle;
+    t = next;
+  }
+  return revolved;
 }
 
 }  // namespace earthshine::scenes

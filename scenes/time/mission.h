@@ -72,7 +72,11 @@ struct EclipseTimes {
 [[nodiscard]] double ellipsoid_limb_rad(const Vec3& position_m, const Vec3& toward,
                                         const Vec3& pole);
 
-// Of the circle with the state's distance.
-[[nodiscard]] double period_at(const Mission& mission, Instant t);
+// Of the Kepler orbit through the state at t, s; none on a parabola or hyperbola.
+[[nodiscard]] std::optional<double> period_at(const Mission& mission, Instant t);
+
+// How far the spacecraft goes around the Earth from one time to a later one, with all full
+// revolutions, deg. In a gap of the trajectory they follow from the period before the gap.
+[[nodiscard]] double revolved_deg(const Mission& mission, Instant from, Instant to);
 
 }  // namespace earthshine::scenes
