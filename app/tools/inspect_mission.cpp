@@ -14,6 +14,7 @@ using scenes::Instant;
 
 // Longer intervals are truncated: every orbit has an eclipse.
 constexpr double longest_eclipse_span_s = 31 * 86400.0;
+constexpr double same_moment_s = 1e-6;  // of two segments: dates are exact to 0.1 us
 
 Json moment_text(const std::optional<Instant>& t) {
   return t ? Json(scenes::utc_text(*t)) : Json();
@@ -30,14 +31,20 @@ Instant end_of_eclipses(const scenes::Mission& mission, Instant start) {
   return std::min(stop, start + longest_eclipse_span_s);
 }
 
-// Within the states.
+// Within the states. Segments that share a moment are one span, so that an eclipse at that moment is
+// one.
 Json eclipses_of(const scenes::Scene& scene, const scenes::Mission& mission) {
   const Instant start = mission.has_span ? mission.time.start : mission.moment;
   const Instant stop = end_of_eclipses(mission, start);
   Json list = Json::array();
-  for (const scenes::TrajectorySegment& segment : mission.trajectory->segments) {
-    const Instant from = std::max(start, segment.first_useful);
-    const Instant to = std::min(stop, segment.last_useful);
+  const auto& segments = mission.trajectory->segments;
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    const Instant from = std::max(start, segments[k].first_useful);
+    while (k + 1 < segments.size() &&
+           segments[k + 1].first_useful - segments[k].last_useful < same_moment_s) {
+      ++k;
+    }
+    const Instant to = std::min(stop, segments[k].last_useful);
     if (!(from < to)) continue;
     for (const scenes::EclipseTimes& eclipse :
          scenes::eclipses_between(mission, from, to, scene.sun->angular_radius_deg)) {

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Missions for users: scripts that write trajectories, inspect, a study along time, and errors."""
 import csv
+import datetime
 import json
 import math
 import subprocess
@@ -63,6 +64,24 @@ class Missions(program.Case):
             rows = list(csv.DictReader(file))
         self.assertEqual(rows[0]["utc"], "2026-03-01T12:00:00Z")
         self.assertIn("2026-03-01T12:15:00Z", (self.folder / "out" / "report.html").read_text(encoding="utf-8"))
+
+    def test_an_eclipse_across_segments_that_share_a_moment_is_one(self):
+        times = lambda: [{name: datetime.datetime.fromisoformat(at[:-1]).timestamp() for name, at in eclipse.items()}
+                         for eclipse in self.json("inspect", "bay.toml")["mission"]["eclipses"]]
+        whole = times()
+        self.assertEqual(len(whole), 1)
+        middle = datetime.datetime.fromtimestamp((whole[0]["umbra_begin"] + whole[0]["umbra_end"]) / 2)
+        lines = (self.folder / "circle.oem").read_text(encoding="utf-8").splitlines()
+        meta = lines[lines.index("META_START"):lines.index("META_STOP") + 1]
+        k = next(k for k, line in enumerate(lines) if line.startswith(middle.isoformat()[:16]))
+        shared = lines[k].split()[0]
+        first = [f"STOP_TIME = {shared}" if line.startswith("STOP_TIME") else line for line in lines[:k + 1]]
+        second = [f"START_TIME = {shared}" if line.startswith("START_TIME") else line for line in meta]
+        self.write("circle.oem", "\n".join(first + second + lines[k:]) + "\n")
+        parts = times()
+        self.assertEqual(len(parts), 1)
+        for name, at in whole[0].items():  # both bisect to 1 ms
+            self.assertAlmostEqual(parts[0][name], at, delta=0.005, msg=name)
 
     def test_positions_of_an_ellipse_grow_by_a_revolution_in_each_period(self):
         """e = 0.6 from the perigee on, in the x-y plane: r = a (cos E - e, (1 - e^2)^(1/2) sin E), E - e sin E = n t."""
