@@ -233,6 +233,12 @@ class Missions(program.Case):
         # epoch, which is the start: 51.6416 deg and 95.565 deg give 51.3 deg; the geodetic latitude
         # is 0.19 deg more.
         self.assertAlmostEqual(facts["latitude_deg"], 51.5, delta=0.2)
+        # SGP4 is evaluated at microseconds, and the dates have them.
+        self.script("tle_to_oem.py", "iss.tle", "-o", "fine.oem", "--start", "2008-09-20T12:25:40", "--stop",
+                    "2008-09-20T12:25:42", "--step", "0.3333333", python=python)
+        dates = [line.split()[0] for line in (self.folder / "fine.oem").read_text(encoding="utf-8").splitlines()
+                 if line.startswith("2008")]
+        self.assertEqual(dates[:3], [f"2008-09-20T12:25:40.{fraction}" for fraction in ("000000", "333333", "666667")])
         old = subprocess.run([python, SCRIPTS / "tle_to_oem.py", "iss.tle", "-o", "x.oem", "--start", "2026-03-01T12:00:00",
                               "--stop", "2026-03-01T13:00:00"], cwd=self.folder, capture_output=True, text=True, check=False)
         self.assertEqual(old.returncode, 1)
