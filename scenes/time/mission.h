@@ -32,6 +32,8 @@ struct Mission {
   std::shared_ptr<const AttitudeHistory> history;
   glm::dmat3 body_axes{1.0};  // columns: the history's body axes in the scene
   EarthClock clock;
+  // Where the scene leaves them open, both follow the Sun's distance.
+  bool sun_illuminance_by_date = true, sun_radius_by_date = true;
   bool ellipsoid = true;  // what hides the Sun: WGS 84, or a sphere of base::earth_radius_m
 };
 
@@ -39,6 +41,7 @@ struct MissionState {
   Vec3 sun{0.0}, earth{0.0}, north{0.0};  // in the scene, unit
   double limb_deg = 0.0;                  // from the Earth's centre to its limb toward the Sun
   double distance_m = 0.0;                // from the Earth's centre
+  double sun_distance_m = 0.0;            // from the spacecraft
   double beta_deg = 0.0;                  // elevation of the Sun above the orbital plane
   double position_deg = 0.0;              // from orbit noon in the direction of motion, 0 to 360
   GroundPoint below;
