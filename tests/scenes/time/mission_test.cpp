@@ -187,9 +187,9 @@ TEST_F(MissionScene, RevolutionsOfALongEllipseAreCounted) {
   folder.put("t.oem", oem_of(ellipse, epoch, 300.0, 4000));
   const Scene scene = folder.read("format = 1\n[orbit]\ntrajectory = \"t.oem\"\n");
   for (const double start : {0.0, 0.3, 0.5, 0.9}) {
-    EXPECT_NEAR(revolved_deg(*mission_of(scene), epoch + start * period,
-                             epoch + (start + 1.0) * period),
-                360.0, 0.01)
+    EXPECT_NEAR(
+        revolved_deg(*mission_of(scene), epoch + start * period, epoch + (start + 1.0) * period),
+        360.0, 0.01)
         << start;
   }
 }
@@ -204,10 +204,10 @@ TEST_F(MissionScene, RevolutionsInGapsFollowFromThePeriod) {
     return text;
   };
   const std::string start = utc_text(epoch), stop = utc_text(epoch + (120.0 + gap));
-  const std::string pieces[] = {
-      test::oem_meta(start, utc_text(epoch + 60.0)) + rows(0.0) +
-          test::oem_meta(utc_text(epoch + (60.0 + gap)), stop) + rows(60.0 + gap),
-      test::oem_meta(start, stop) + rows(0.0) + rows(60.0 + gap)};
+  const std::string pieces[] = {test::oem_meta(start, utc_text(epoch + 60.0)) + rows(0.0) +
+                                    test::oem_meta(utc_text(epoch + (60.0 + gap)), stop) +
+                                    rows(60.0 + gap),
+                                test::oem_meta(start, stop) + rows(0.0) + rows(60.0 + gap)};
   for (const std::string& piece : pieces) {
     folder.put("t.oem", test::oem_head + piece);
     const Scene scene = folder.read("format = 1\n[orbit]\ntrajectory = \"t.oem\"\n");
@@ -217,7 +217,8 @@ TEST_F(MissionScene, RevolutionsInGapsFollowFromThePeriod) {
 
 // 12 km/s at 7000 km, where sqrt(2 GM / r) = 10.67 km/s is enough to leave.
 TEST_F(MissionScene, AHyperbolaHasNoPeriod) {
-  folder.put("t.oem", test::oem_head + test::oem_meta("2026-03-01T12:00:00", "2026-03-01T12:00:00") +
+  folder.put("t.oem", test::oem_head +
+                          test::oem_meta("2026-03-01T12:00:00", "2026-03-01T12:00:00") +
                           oem_row("2026-03-01T12:00:00", {{7e6, 0.0, 0.0}, {0.0, 12e3, 0.0}}));
   const Scene scene = folder.read("format = 1\n[orbit]\ntrajectory = \"t.oem\"\n");
   EXPECT_FALSE(period_at(*mission_of(scene), epoch));
