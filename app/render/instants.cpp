@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <initializer_list>
+#include <utility>
+#include <vector>
 
 #include "app/console.h"
 #include "app/render/draw.h"
@@ -22,18 +25,53 @@ namespace {
 
 constexpr int most_instants = 64;
 constexpr double least_motion_px = 0.1;
+constexpr int scale_steps = 32;     // of the picture's sides
 constexpr double most_error = 0.5;  // wanted of one instant
 // Of the wanted error: instants are not equally bright, and their errors add up.
 constexpr double share_of_error = 0.95;
 constexpr int most_repeats = 2;
 
+// The largest scale of the picture, px/rad, in cones about its axis.
+class PictureScale {
+ public:
+  explicit PictureScale(const raytrace::CameraModel& camera) : camera_(camera) {
+    for (int k = 0; k <= scale_steps; ++k) {
+      for (int i = 0; i <= scale_steps; ++i) {
+        const Vec3 there = camera.projection.direction(glm::dvec2(i, k) / double(scale_steps));
+        sampled_.emplace_back(angle_of(there),
+                              camera.projection.px_per_rad(there, camera.columns, camera.rows));
+      }
+    }
+    std::ranges::sort(sampled_);
+    for (std::size_t k = 1; k < sampled_.size(); ++k) {
+      sampled_[k].second = std::max(sampled_[k].second, sampled_[k - 1].second);
+    }
+  }
+
+  // In the part of the picture that the cone through these points contains.
+  [[nodiscard]] double px_per_rad(std::initializer_list<Vec3> points) const {
+    double angle = 0.0;
+    for (const Vec3& point : points) angle = std::max(angle, angle_of(camera_.to_camera(point)));
+    const auto beyond = std::ranges::lower_bound(sampled_, angle, {}, &Sample::first);
+    return (beyond == sampled_.end() ? sampled_.back() : *beyond).second;
+  }
+  [[nodiscard]] double largest() const { return sampled_.back().second; }
+
+ private:
+  using Sample = std::pair<double, double>;  // rad from the axis, px/rad up to there
+  static double angle_of(const Vec3& v) { return std::atan2(std::hypot(v.x, v.y), v.z); }
+
+  const raytrace::CameraModel& camera_;
+  std::vector<Sample> sampled_;
+};
+
 // The largest speed of surfaces and lamps in the picture, px/s: across the line of sight, of the
 // fastest corner of each triangle at the triangle's nearest point.
 double fastest_px_s(const scenes::Scene& scene, const raytrace::CameraModel& camera) {
-  const double px_per_rad = camera.rows / (2.0 * camera.projection.half_height);
+  const PictureScale scale(camera);
   double fastest = 0.0;
-  const auto add = [&](double speed_m_s, const Vec3& point) {
-    const double distance = std::max(1e-9, glm::length(point - camera.position));
+  const auto add = [&](double speed_m_s, const Vec3& nearest, double px_per_rad) {
+    const double distance = std::max(1e-9, glm::length(nearest - camera.position));
     fastest = std::max(fastest, px_per_rad * speed_m_s / distance);
   };
   for (const scenes::Object& object : scene.objects) {
@@ -47,14 +85,16 @@ double fastest_px_s(const scenes::Scene& scene, const raytrace::CameraModel& cam
         speed = std::max(
             speed, glm::length(object.motion.velocity_m_s + glm::cross(turn, corner - about)));
       }
-      add(speed, scenes::nearest_on_triangle(camera.position, a, b, c));
+      add(speed, scenes::nearest_on_triangle(camera.position, a, b, c),
+          scale.px_per_rad({a, b, c}));
     }
   }
   for (const scenes::Lamp& lamp : scene.lamps) {
     if (!lamp.motion.moves()) continue;
-    add(glm::length(lamp.motion.velocity_m_s), lamp.position);
+    add(glm::length(lamp.motion.velocity_m_s), lamp.position, scale.px_per_rad({lamp.position}));
     // What its beam lights moves as fast, seen from the lamp.
-    fastest = std::max(fastest, px_per_rad * base::radians(glm::length(lamp.motion.spin_deg_s)));
+    fastest =
+        std::max(fastest, scale.largest() * base::radians(glm::length(lamp.motion.spin_deg_s)));
   }
   return fastest;
 }

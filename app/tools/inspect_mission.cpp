@@ -14,21 +14,37 @@ using scenes::Instant;
 
 // Longer intervals are truncated: every orbit has an eclipse.
 constexpr double longest_eclipse_span_s = 31 * 86400.0;
+constexpr double same_moment_s = 1e-6;  // of two segments: dates are exact to 0.1 us
 
 Json moment_text(const std::optional<Instant>& t) {
   return t ? Json(scenes::utc_text(*t)) : Json();
 }
 
-// Over [time], or one revolution from the scene's time, within the states.
+// [time], or one revolution from the scene's time; of an orbit without a period all states from
+// there on.
+Instant end_of_eclipses(const scenes::Mission& mission, Instant start) {
+  Instant stop = std::max(mission.time.stop, start);
+  if (!mission.has_span) {
+    const auto period_s = scenes::period_at(mission, start);
+    stop = period_s ? start + *period_s : mission.trajectory->last();
+  }
+  return std::min(stop, start + longest_eclipse_span_s);
+}
+
+// Within the states. Segments that share a moment are one span, so that an eclipse at that moment is
+// one.
 Json eclipses_of(const scenes::Scene& scene, const scenes::Mission& mission) {
   const Instant start = mission.has_span ? mission.time.start : mission.moment;
-  const Instant stop = mission.has_span ? std::min(std::max(mission.time.stop, start),
-                                                   start + longest_eclipse_span_s)
-                                        : start + scenes::period_at(mission, start);
+  const Instant stop = end_of_eclipses(mission, start);
   Json list = Json::array();
-  for (const scenes::TrajectorySegment& segment : mission.trajectory->segments) {
-    const Instant from = std::max(start, segment.first_useful);
-    const Instant to = std::min(stop, segment.last_useful);
+  const auto& segments = mission.trajectory->segments;
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    const Instant from = std::max(start, segments[k].first_useful);
+    while (k + 1 < segments.size() &&
+           segments[k + 1].first_useful - segments[k].last_useful < same_moment_s) {
+      ++k;
+    }
+    const Instant to = std::min(stop, segments[k].last_useful);
     if (!(from < to)) continue;
     for (const scenes::EclipseTimes& eclipse :
          scenes::eclipses_between(mission, from, to, scene.sun->angular_radius_deg)) {
@@ -51,6 +67,7 @@ Json mission_facts(const scenes::Scene& scene) {
   const scenes::Trajectory& trajectory = *mission->trajectory;
   const Instant start = mission->moment;
   const scenes::MissionState state = scenes::mission_state(*mission, start);
+  const auto period_s = scenes::period_at(*mission, start);
   Json segments = Json::array();
   for (const scenes::TrajectorySegment& segment : trajectory.segments) {
     segments.push_back({{"start", scenes::utc_text(segment.first_useful)},
@@ -72,7 +89,7 @@ Json mission_facts(const scenes::Scene& scene) {
           {"longitude_deg", state.below.longitude_deg},
           {"height_m", state.below.height_m},
           {"distance_m", state.distance_m},
-          {"period_s", scenes::period_at(*mission, start)},
+          {"period_s", period_s ? Json(*period_s) : Json()},
           {"beta_deg", state.beta_deg},
           {"position_deg", state.position_deg},
           {"attitude", mission->history ? Json() : Json(mission->attitude)},
@@ -91,10 +108,13 @@ std::string mission_lines(const Json& facts) {
   }
   text += fmt::format(
       "at {}: over latitude {:.4f}, longitude {:.4f} deg, {:.2f} km high; beta {:.3f} deg, orbit "
-      "{:.2f} deg from noon\n",
+      "{:.2f} deg from noon, {}\n",
       facts["utc"], facts["latitude_deg"].get<double>(), facts["longitude_deg"].get<double>(),
       facts["height_m"].get<double>() / 1e3, facts["beta_deg"].get<double>(),
-      facts["position_deg"].get<double>());
+      facts["position_deg"].get<double>(),
+      facts["period_s"].is_null()
+          ? "no period: a parabola or hyperbola"
+          : fmt::format("period {:.2f} min", facts["period_s"].get<double>() / 60.0));
   if (!facts["attitude_file"].is_null()) {
     text += fmt::format("attitude: {}, from {}\n", facts["attitude_file"], facts["attitude_frame"]);
   } else {

@@ -154,9 +154,8 @@ StudyWay find_moments(const studies::StudyFile& study, const scenes::Mission& mi
     way.places.push_back(studies::sky_of(sky));
     double position = sky.orbit->position_deg;
     if (k > 0) {
-      // The number of full revolutions follows from the time.
       const double expected =
-          way.positions_deg.back() + 360.0 * span.step_s / scenes::period_at(mission, span.at(k));
+          way.positions_deg.back() + scenes::revolved_deg(mission, span.at(k - 1), span.at(k));
       position = expected + std::remainder(position - expected, 360.0);
     }
     way.positions_deg.push_back(position);

@@ -155,7 +155,13 @@ class Rows {
   // Of the lamps that [moon] and [airglow] add: why they are off.
   std::string night() {
     std::string text;
-    if (scene_.moon && scene_.moon->hidden) text += "; the Moon is behind the Earth";
+    if (scene_.moon && scene_.moon->hidden) {
+      text += "; the Moon is behind the Earth";
+    } else if (scene_.moon && base::max_component(scene_.moon->illuminance_lx) <= 0.0) {
+      const bool sun_is_off = scene_.sun && base::max_component(scene_.sun->illuminance_lx) <= 0.0;
+      text += sun_is_off ? "; the Moon is dark: sun.illuminance is 0"
+                         : "; the Moon is in the Earth's shadow";
+    }
     for (std::size_t k = 0; k < scene_.lamps.size(); ++k) {
       if (scene_.lamps[k].group != airglow_group) continue;
       if (groups_.lamp[k] == no_group) {

@@ -44,8 +44,8 @@ void move_files(TomlNode& node, const fs::path& folder) {
   }
 }
 
-// Inserts the included entries before the own ones, except for names that the scene has too.
-void put_before(TomlArray& own, TomlArray included) {
+// Adds entries to a list, except for names that it has.
+void add_entries(TomlArray& own, TomlArray included, bool in_front) {
   std::erase_if(included, [&](const TomlNode& node) {
     const auto* table = std::get_if<TomlTable>(&node.value);
     const std::string name = table == nullptr ? std::string() : text_in(*table, "name");
@@ -54,7 +54,7 @@ void put_before(TomlArray& own, TomlArray included) {
       return mine != nullptr && text_in(*mine, "name") == name;
     });
   });
-  own.insert(own.begin(), std::make_move_iterator(included.begin()),
+  own.insert(in_front ? own.begin() : own.end(), std::make_move_iterator(included.begin()),
              std::make_move_iterator(included.end()));
 }
 
@@ -74,14 +74,17 @@ class Includer {
     std::erase_if(root, [](const TomlEntry& one) { return one.key == "include"; });
     const auto* items = std::get_if<TomlArray>(&asked.node.value);
     if (items == nullptr) refuse(asked.where, "\"include\" is " + describe(asked.node));
-    // In reverse order: entries of each file are inserted before existing ones.
+    // A later file replaces entries of an earlier one.
+    TomlTable included;
     for (auto item = items->rbegin(); item != items->rend(); ++item) {
       const auto* name = std::get_if<std::string>(&item->value);
       if (name == nullptr || name->empty()) {
         refuse(item->where, "\"include\" holds " + describe(*item));
       }
-      merge(root, read(file.parent_path() / *name, item->where));
+      merge(included, read(file.parent_path() / *name, item->where), true);
     }
+    // The own entries come first: the first camera is the scene's.
+    merge(root, std::move(included), false);
   }
 
  private:
@@ -141,7 +144,7 @@ class Includer {
         "a scene and its included files have one unit");
   }
 
-  static void merge(TomlTable& root, TomlTable included) {
+  static void merge(TomlTable& root, TomlTable included, bool in_front) {
     for (TomlEntry& entry : included) {
       if (std::find(std::begin(of_scene_alone), std::end(of_scene_alone), entry.key) !=
           std::end(of_scene_alone)) {
@@ -154,7 +157,7 @@ class Includer {
       }
       auto* mine = std::get_if<TomlArray>(&own->node.value);
       auto* theirs = std::get_if<TomlArray>(&entry.node.value);
-      if (mine != nullptr && theirs != nullptr) put_before(*mine, std::move(*theirs));
+      if (mine != nullptr && theirs != nullptr) add_entries(*mine, std::move(*theirs), in_front);
     }
   }
 

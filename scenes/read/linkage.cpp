@@ -228,10 +228,25 @@ PoseTable read_poses(Scene& scene, const TableReader& table, double unit_m) {
   }
   if (by_quaternion) columns.insert(columns.end(), {"qw", "qx", "qy", "qz"});
   if (by_angles) columns.insert(columns.end(), {"rotate_x", "rotate_y", "rotate_z"});
-  return file.read<TablePose>(
-      columns, [&](const std::vector<double>& n, const base::Location& where) {
+  std::optional<Vec3> before_deg;
+  std::string first_jump;
+  int more_jumps = 0;
+  PoseTable poses =
+      file.read<TablePose>(columns, [&](const std::vector<double>& n, const base::Location& where) {
         TablePose pose{unit_m * Vec3(n[0], n[1], n[2]), {1.0, 0.0, 0.0, 0.0}};
-        if (by_angles) pose.turn = glm::quat_cast(rotation_xyz({n[3], n[4], n[5]}));
+        if (by_angles) {
+          const Vec3 row_deg(n[3], n[4], n[5]);
+          const double step_deg =
+              before_deg ? base::max_component(glm::abs(row_deg - *before_deg)) : 0.0;
+          if (step_deg > 180.0 && first_jump.empty()) {
+            first_jump = fmt::format("{}:{}: the angles change by {:g} deg from the row before",
+                                     where.file, where.line, step_deg);
+          } else if (step_deg > 180.0) {
+            ++more_jumps;
+          }
+          before_deg = row_deg;
+          pose.turn = glm::quat_cast(rotation_xyz(row_deg));
+        }
         if (!by_quaternion) return pose;
         const glm::dquat q(n[3], n[4], n[5], n[6]);
         if (!(std::abs(glm::length(q) - 1.0) <= length_slack)) {
@@ -242,6 +257,13 @@ PoseTable read_poses(Scene& scene, const TableReader& table, double unit_m) {
         pose.turn = glm::normalize(q);
         return pose;
       });
+  if (!first_jump.empty()) {
+    scene.warnings.push_back(fmt::format(
+        "{}{}; between rows the turn is the shorter way. Give rows less than 180 deg apart, as "
+        "every 120 deg",
+        first_jump, more_jumps > 0 ? fmt::format(" ({} more such)", more_jumps) : std::string()));
+  }
+  return poses;
 }
 
 Visitor read_visitor(Scene& scene, const TableReader& table, double unit_m) {

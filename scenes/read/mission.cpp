@@ -140,9 +140,11 @@ TimeSpan read_time(const TomlNode& node) {
   return read_span(TableReader(node, "[time]", study_time_keys));
 }
 
-Orbit read_mission(Scene& scene, const TomlNode& node, const TomlNode* time) {
+Orbit read_mission(Scene& scene, const TomlNode& node, const TomlNode* time, const SunKeys& given) {
   const TableReader table(node, "[orbit]", trajectory_keys);
   auto mission = std::make_shared<Mission>();
+  mission->sun_illuminance_by_date = !given.illuminance;
+  mission->sun_radius_by_date = !given.angular_radius_deg;
   mission->clock.ut1_minus_utc_s = table.number("ut1_minus_utc_s", {-1.0, 1.0}).value_or(0.0);
   mission->ellipsoid =
       table.choice("earth_shape", shapes_of_earth).value_or("ellipsoid") == "ellipsoid";

@@ -22,6 +22,11 @@ inline constexpr std::size_t most_moments = 3600;
 [[nodiscard]] glm::dmat3 read_body_axes(const TableReader& table);
 [[nodiscard]] std::optional<ScalarPlace> read_scalar_place(const TableReader& table);
 
-[[nodiscard]] Orbit read_mission(Scene& scene, const TomlNode& orbit, const TomlNode* time);
+// The keys that [sun] has; the others follow from its distance.
+struct SunKeys {
+  bool illuminance = false, angular_radius_deg = false;
+};
+[[nodiscard]] Orbit read_mission(Scene& scene, const TomlNode& orbit, const TomlNode* time,
+                                 const SunKeys& given);
 
 }  // namespace earthshine::scenes

@@ -217,7 +217,12 @@ void read_sky(Scene& scene, const SkyTables& tables) {
   auto [sun, earth, orbit, time, moon] = tables;
   const bool by_orbit = orbit != nullptr;
   if (by_orbit && names_trajectory(*orbit)) {
-    scene.orbit = read_mission(scene, *orbit, time);
+    const auto given = [&, at = sun](std::string_view key) {
+      const auto* table = at == nullptr ? nullptr : std::get_if<TomlTable>(&at->value);
+      return table != nullptr && find_entry(*table, key) != nullptr;
+    };
+    scene.orbit =
+        read_mission(scene, *orbit, time, {given("illuminance"), given("angular_radius_deg")});
   } else if (time != nullptr) {
     throw base::Error(base::Blame::Input, time->where, "[time] stands without a trajectory",
                       "positions on a circle have no date",

@@ -213,14 +213,13 @@ std::optional<Instant> instant_of_mjd(double day, double seconds, TimeSystem sys
 }
 
 std::string utc_text(Instant t) {
-  // Adds half a millisecond, so that truncation rounds.
-  const Date utc = utc_date(t + 0.5e-3);
+  const Date utc = utc_date(t);
   int year = 0, month = 0, day = 0;
   int part[4] = {};
-  eraD2dtf("UTC", 4, utc.whole, utc.rest, &year, &month, &day, part);
+  eraD2dtf("UTC", 3, utc.whole, utc.rest, &year, &month, &day, part);  // rounds
   std::string text = fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}", year, month, day, part[0],
                                  part[1], part[2]);
-  const int milliseconds = part[3] / 10;
+  const int milliseconds = part[3];
   if (milliseconds > 0) text += fmt::format(".{:03}", milliseconds);
   while (milliseconds > 0 && text.back() == '0') text.pop_back();
   return text + "Z";

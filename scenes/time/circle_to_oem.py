@@ -36,7 +36,7 @@ def main():
     rows = []
     for k in range(int(options.hours * 3600.0 / options.step + 1e-9) + 1):
         u = math.radians(options.argument) + rate * k * options.step
-        date = (start + datetime.timedelta(seconds=k * options.step)).isoformat(timespec="milliseconds")
+        date = (start + datetime.timedelta(seconds=k * options.step)).isoformat(timespec="microseconds")
         position = [a * (math.cos(u) * p[n] + math.sin(u) * q[n]) for n in range(3)]
         velocity = [a * rate * (-math.sin(u) * p[n] + math.cos(u) * q[n]) for n in range(3)]
         rows.append(date + "".join(f" {x:.6f}" for x in position) + "".join(f" {x:.9f}" for x in velocity))

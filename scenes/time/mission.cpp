@@ -13,8 +13,12 @@ namespace {
 
 // WGS 84 (NIMA TR8350.2, 2000).
 constexpr double earth_equator_m = 6378137.0, earth_flattening = 1.0 / 298.257223563;
+constexpr double sun_radius_m = 695.7e6;  // IAU 2015 resolution B3
 constexpr double eclipse_step_s = 15.0;
 constexpr double eclipse_error_s = 1e-3;
+// Of sqrt(r^3 / GM). A fall from r to the centre takes sqrt(2) / 3 of it at least, so that a step on
+// an ellipse ends beyond r / 2, and goes less than half a revolution.
+constexpr double longest_step_share = 0.3;
 
 // Unit vectors in GCRS.
 struct LocalFrame {
@@ -34,9 +38,10 @@ struct LocalFrame {
 };
 
 // From the spacecraft: in low orbit 0.003 deg from the direction at the Earth's centre.
-Vec3 sun_from(const State& state, Instant t) {
-  return glm::normalize(sun_direction(t) * sun_distance_m(t) - state.position_m);
+Vec3 sun_offset_m(const State& state, Instant t) {
+  return sun_direction(t) * sun_distance_m(t) - state.position_m;
 }
+Vec3 sun_from(const State& state, Instant t) { return glm::normalize(sun_offset_m(state, t)); }
 
 // Transforms directions from GCRS to the scene.
 class SceneAxes {
@@ -89,6 +94,24 @@ double above_limb(const Mission& mission, Instant t) {
   return angle_between(sun, -glm::normalize(state.position_m)) - limb_rad(mission, state, sun, t);
 }
 
+// The share of the Sun's disc that the Earth leaves uncovered at the Moon's centre, without the
+// light that the atmosphere refracts into the shadow.
+double sunlit_share(const Mission& mission, const Vec3& moon, const Vec3& sun, Instant t) {
+  const Vec3 direction = glm::normalize(sun - moon);
+  const double sun_rad = std::asin(sun_radius_m / glm::length(sun - moon));
+  const SunAndEarth discs{sun_rad, limb_rad(mission, {moon, {}}, direction, t),
+                          angle_between(direction, -glm::normalize(moon))};
+  return std::max(0.0, discs.left(sun_rad)) / disc_solid_angle(sun_rad);
+}
+
+// The Sun's values at one astronomical unit are the defaults: illuminance by the inverse square.
+void set_sun(Sun& sun, const Mission& mission, const MissionState& state) {
+  const double units = state.sun_distance_m / astronomical_unit_m;
+  sun.direction = state.sun;
+  if (mission.sun_illuminance_by_date) sun.illuminance_lx = Sun().illuminance_lx / (units * units);
+  if (mission.sun_radius_by_date) sun.angular_radius_deg = Sun().angular_radius_deg / units;
+}
+
 // The Moon from the spacecraft.
 void move_moon(Scene& scene, const Mission& mission, Instant t) {
   const State state = mission.trajectory->at(t);
@@ -100,9 +123,12 @@ void move_moon(Scene& scene, const Mission& mission, Instant t) {
   scene.moon->phase_deg =
       base::degrees(angle_between(glm::normalize(sun - moon), glm::normalize(-away)));
   scene.moon->hidden = angle_between(direction, -glm::normalize(state.position_m)) < limb;
-  scene.moon->illuminance_lx =
-      moon_illuminance_lx(scene.sun ? scene.sun->illuminance_lx : Sun().illuminance_lx,
-                          scene.moon->phase_deg, glm::length(away), glm::length(sun - moon));
+  // The scene's Sun is the one at the spacecraft.
+  const double units = glm::length(sun - state.position_m) / astronomical_unit_m;
+  const Rgb sun_lx = scene.sun ? scene.sun->illuminance_lx * (units * units) : Sun().illuminance_lx;
+  scene.moon->illuminance_lx = sunlit_share(mission, moon, sun, t) *
+                               moon_illuminance_lx(sun_lx, scene.moon->phase_deg, glm::length(away),
+                                                   glm::length(sun - moon));
 }
 
 }  // namespace
@@ -115,10 +141,11 @@ std::size_t TimeSpan::count() const {
 MissionState mission_state(const Mission& mission, Instant t) {
   const State state = mission.trajectory->at(t);
   const LocalFrame local(state);
-  const Vec3 sun = sun_from(state, t);
+  const Vec3 to_sun = sun_offset_m(state, t), sun = glm::normalize(to_sun);
   const SceneAxes in_scene(mission, local, sun, t);
   MissionState found;
   found.distance_m = glm::length(state.position_m);
+  found.sun_distance_m = glm::length(to_sun);
   found.sun = in_scene(sun);
   found.earth = in_scene(-local.zenith);
   found.north = in_scene(pole_at(mission, t));
@@ -147,7 +174,7 @@ void move_to_moment(Scene& scene, Instant t) {
   scene.orbit->altitude_m = state.distance_m - base::earth_radius_m;
   scene.orbit->beta_deg = state.beta_deg;
   scene.orbit->position_deg = state.position_deg;
-  if (scene.sun) scene.sun->direction = state.sun;
+  if (scene.sun) set_sun(*scene.sun, mission, state);
   if (scene.moon) move_moon(scene, mission, t);
   if (!scene.earth) return;
   scene.earth->direction = state.earth;
@@ -214,8 +241,39 @@ std::vector<EclipseTimes> eclipses_between(const Mission& mission, Instant from,
   return found;
 }
 
-double period_at(const Mission& mission, Instant t) {
-  return orbit_period_s(glm::length(mission.trajectory->at(t).position_m) - base::earth_radius_m);
+std::optional<double> period_at(const Mission& mission, Instant t) {
+  const State state = mission.trajectory->at(t);
+  // 1 / a by vis-viva: v^2 = GM (2 / r - 1 / a).
+  const double per_m = 2.0 / glm::length(state.position_m) -
+                       glm::dot(state.velocity_m_s, state.velocity_m_s) / earth_gm_m3_s2;
+  if (!(per_m > 0.0)) return std::nullopt;
+  return 2.0 * base::pi / (per_m * std::sqrt(per_m * earth_gm_m3_s2));
+}
+
+double revolved_deg(const Mission& mission, Instant from, Instant to) {
+  const Trajectory& trajectory = *mission.trajectory;
+  double revolved = 0.0;
+  for (Instant t = from; t < to;) {
+    const State before = trajectory.at(t);
+    const double r = glm::length(before.position_m);
+    const double step = std::min(trajectory.longest_gap_s(t),
+                                 longest_step_share * r * std::sqrt(r / earth_gm_m3_s2));
+    const Instant wanted = std::min(t + step, to), next = trajectory.next_state(wanted);
+    double angle = base::degrees(angle_between(glm::normalize(before.position_m),
+                                               glm::normalize(trajectory.at(next).position_m)));
+    if (next > wanted) {
+      const Vec3 ahead = glm::cross(before.position_m, trajectory.at(next).position_m);
+      if (glm::dot(ahead, glm::cross(before.position_m, before.velocity_m_s)) < 0.0) {
+        angle = 360.0 - angle;
+      }
+      const auto period = period_at(mission, t);
+      const double expected = period ? 360.0 * (next - t) / *period : angle;
+      angle = expected + std::remainder(angle - expected, 360.0);
+    }
+    revolved += angle;
+    t = next;
+  }
+  return revolved;
 }
 
 }  // namespace earthshine::scenes

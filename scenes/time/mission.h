@@ -32,6 +32,8 @@ struct Mission {
   std::shared_ptr<const AttitudeHistory> history;
   glm::dmat3 body_axes{1.0};  // columns: the history's body axes in the scene
   EarthClock clock;
+  // Where the scene leaves them open, both follow the Sun's distance.
+  bool sun_illuminance_by_date = true, sun_radius_by_date = true;
   bool ellipsoid = true;  // what hides the Sun: WGS 84, or a sphere of base::earth_radius_m
 };
 
@@ -39,6 +41,7 @@ struct MissionState {
   Vec3 sun{0.0}, earth{0.0}, north{0.0};  // in the scene, unit
   double limb_deg = 0.0;                  // from the Earth's centre to its limb toward the Sun
   double distance_m = 0.0;                // from the Earth's centre
+  double sun_distance_m = 0.0;            // from the spacecraft
   double beta_deg = 0.0;                  // elevation of the Sun above the orbital plane
   double position_deg = 0.0;              // from orbit noon in the direction of motion, 0 to 360
   GroundPoint below;
@@ -72,7 +75,11 @@ struct EclipseTimes {
 [[nodiscard]] double ellipsoid_limb_rad(const Vec3& position_m, const Vec3& toward,
                                         const Vec3& pole);
 
-// Of the circle with the state's distance.
-[[nodiscard]] double period_at(const Mission& mission, Instant t);
+// Of the Kepler orbit through the state at t, s; none on a parabola or hyperbola.
+[[nodiscard]] std::optional<double> period_at(const Mission& mission, Instant t);
+
+// How far the spacecraft goes around the Earth from one time to a later one, with all full
+// revolutions, deg. In a gap of the trajectory they follow from the period before the gap.
+[[nodiscard]] double revolved_deg(const Mission& mission, Instant from, Instant to);
 
 }  // namespace earthshine::scenes

@@ -64,7 +64,7 @@ def main():
         error, position, velocity = satellite.sgp4(whole, fraction)
         if error:
             sys.exit(f"{t.isoformat()}: SGP4: {SGP4_ERRORS[error]}")
-        rows.append(t.isoformat(timespec="milliseconds") + "".join(f" {x:.6f}" for x in position)
+        rows.append(t.isoformat(timespec="microseconds") + "".join(f" {x:.6f}" for x in position)
                     + "".join(f" {x:.9f}" for x in velocity))
     designator = f"{satellite.intldesg[:2]}-{satellite.intldesg[2:]}".strip() or "unknown"
     century = "19" if designator[:2] > "56" else "20"

@@ -104,6 +104,13 @@ bool holds(const TrajectorySegment& segment, Instant t) {
   return t - segment.first_useful > -1e-6 && t - segment.last_useful < 1e-6;
 }
 
+// The last state at or before t that another one follows.
+std::size_t state_before(const TrajectorySegment& segment, Instant t) {
+  const auto upper = std::upper_bound(segment.at.begin(), segment.at.end(), t);
+  const auto after = static_cast<std::size_t>(upper - segment.at.begin());
+  return std::min(after > 0 ? after - 1 : 0, segment.at.size() > 1 ? segment.at.size() - 2 : 0);
+}
+
 const std::vector<std::string_view> oem_keys = {
     "OBJECT_NAME",       "OBJECT_ID",   "CENTER_NAME",   "REF_FRAME",
     "REF_FRAME_EPOCH",   "TIME_SYSTEM", "START_TIME",    "USEABLE_START_TIME",
@@ -327,9 +334,24 @@ double gap_of(const State& state) {
          glm::length(glm::cross(state.position_m, state.velocity_m_s));
 }
 
+bool in_gap(const TrajectorySegment& segment, std::size_t before, Instant t) {
+  return segment.at.size() > 1 && t > segment.at[before] && t < segment.at[before + 1] &&
+         segment.at[before + 1] - segment.at[before] > gap_of(segment.states[before]);
+}
+
 }  // namespace
 
 double Trajectory::longest_gap_s(Instant t) const { return gap_of(at(t)); }
+
+Instant Trajectory::next_state(Instant t) const {
+  const auto found = std::find_if(
+      segments.rbegin(), segments.rend(),
+      [&](const TrajectorySegment& segment) { return t - segment.first_useful > -1e-6; });
+  if (found == segments.rend()) return first();
+  if (!holds(*found, t)) return found == segments.rbegin() ? t : std::prev(found)->first_useful;
+  const std::size_t before = state_before(*found, t);
+  return in_gap(*found, before, t) ? found->at[before + 1] : t;
+}
 
 State Trajectory::at(Instant t) const {
   const auto found =
@@ -347,18 +369,13 @@ State Trajectory::at(Instant t) const {
                                                    "is interpolated, reach from",
                             listed(spans)));
   }
-  const auto upper = std::upper_bound(found->at.begin(), found->at.end(), t);
-  const auto after = static_cast<std::size_t>(upper - found->at.begin());
-  const std::size_t before =
-      std::min(after > 0 ? after - 1 : 0, found->at.size() > 1 ? found->at.size() - 2 : 0);
-  const State& start = found->states[before];
-  if (found->at.size() > 1 && t > found->at[before] && t < found->at[before + 1]) {
-    if (found->at[before + 1] - found->at[before] > gap_of(start)) {
-      fail_gap({file, found->lines[before + 1], 0}, found->at[before], found->at[before + 1],
-               "Give states more often, or begin a new segment");
-    }
+  const std::size_t before = state_before(*found, t);
+  if (in_gap(*found, before, t)) {
+    fail_gap({file, found->lines[before + 1], 0}, found->at[before], found->at[before + 1],
+             "Give states more often, or begin a new segment");
   }
-  const State state = found->at.size() == 1 ? start : interpolate(*found, before, t);
+  const State state =
+      found->at.size() == 1 ? found->states[before] : interpolate(*found, before, t);
   return to_gcrs(state, frame, found->frame_epoch.value_or(t), clock);
 }
 

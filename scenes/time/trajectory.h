@@ -39,6 +39,8 @@ struct Trajectory {
   // spacecraft moves more than 36 deg around the Earth between two states: there a cubic of two
   // states has an error of 3 km in low orbit (R theta^4 / 384).
   [[nodiscard]] State at(Instant t) const;
+  // t, or in a gap the gap's end: the next state, or the next segment's start. t: up to last().
+  [[nodiscard]] Instant next_state(Instant t) const;
   // Time in which the spacecraft moves 36 deg around the Earth from its state at t.
   [[nodiscard]] double longest_gap_s(Instant t) const;
   [[nodiscard]] Instant first() const { return segments.front().first_useful; }

@@ -97,6 +97,20 @@ double Projection::film_per_rad(const Vec3& point) const {
   return across * std::sqrt(glm::dot(slope[0], slope[0]) + glm::dot(slope[1], slope[1]));
 }
 
+double Projection::px_per_rad(const Vec3& point, int columns, int rows) const {
+  constexpr double step = 1e-4;  // rad; differences have an error of its square
+  const Vec3 direction = glm::normalize(point);
+  const base::Frame3 frame = base::frame_around(direction);
+  const glm::dvec2 px(columns, rows);
+  const auto slope = [&](const Vec3& side) {
+    return px * (place(direction + step * side) - place(direction - step * side)) / (2.0 * step);
+  };
+  // The largest singular value of the derivative.
+  const glm::dvec2 u = slope(frame.tangent), v = slope(frame.bitangent);
+  const double a = glm::dot(u, u), b = glm::dot(v, v), c = glm::dot(u, v);
+  return std::sqrt(0.5 * (a + b) + std::hypot(0.5 * (a - b), c));
+}
+
 double Projection::magnification(const Vec3& point) const {
   switch (distortion_) {
     case Distortion::None:

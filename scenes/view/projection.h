@@ -33,6 +33,8 @@ struct Projection {
   [[nodiscard]] double film_per_sr(const Vec3& point) const;
   // The largest length of film, at unit focal length, per radian: 1 / cos^2 for a pinhole.
   [[nodiscard]] double film_per_rad(const Vec3& point) const;
+  // The largest distance in the picture, px of columns x rows, per radian about a direction.
+  [[nodiscard]] double px_per_rad(const Vec3& point, int columns, int rows) const;
   // Area of film by the area that a pinhole would have: 1 without distortion.
   [[nodiscard]] double magnification(const Vec3& point) const;
   // The distortion inverts over the whole picture; otherwise points of the scene would be seen at

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Missions for users: scripts that write trajectories, inspect, a study along time, and errors."""
 import csv
+import datetime
 import json
 import math
 import subprocess
@@ -63,6 +64,53 @@ class Missions(program.Case):
             rows = list(csv.DictReader(file))
         self.assertEqual(rows[0]["utc"], "2026-03-01T12:00:00Z")
         self.assertIn("2026-03-01T12:15:00Z", (self.folder / "out" / "report.html").read_text(encoding="utf-8"))
+
+    def test_an_eclipse_across_segments_that_share_a_moment_is_one(self):
+        times = lambda: [{name: datetime.datetime.fromisoformat(at[:-1]).timestamp() for name, at in eclipse.items()}
+                         for eclipse in self.json("inspect", "bay.toml")["mission"]["eclipses"]]
+        whole = times()
+        self.assertEqual(len(whole), 1)
+        middle = datetime.datetime.fromtimestamp((whole[0]["umbra_begin"] + whole[0]["umbra_end"]) / 2)
+        lines = (self.folder / "circle.oem").read_text(encoding="utf-8").splitlines()
+        meta = lines[lines.index("META_START"):lines.index("META_STOP") + 1]
+        k = next(k for k, line in enumerate(lines) if line.startswith(middle.isoformat()[:16]))
+        shared = lines[k].split()[0]
+        first = [f"STOP_TIME = {shared}" if line.startswith("STOP_TIME") else line for line in lines[:k + 1]]
+        second = [f"START_TIME = {shared}" if line.startswith("START_TIME") else line for line in meta]
+        self.write("circle.oem", "\n".join(first + second + lines[k:]) + "\n")
+        parts = times()
+        self.assertEqual(len(parts), 1)
+        for name, at in whole[0].items():  # both bisect to 1 ms
+            self.assertAlmostEqual(parts[0][name], at, delta=0.005, msg=name)
+
+    def test_positions_of_an_ellipse_grow_by_a_revolution_in_each_period(self):
+        """e = 0.6 from the perigee on, in the x-y plane: r = a (cos E - e, (1 - e^2)^(1/2) sin E), E - e sin E = n t."""
+        mu, a, e = 398600.4418, 17000.0, 0.6
+        n = math.sqrt(mu / a**3)
+        period = 2 * math.pi / n
+        lines = ["CCSDS_OEM_VERS = 2.0", "CREATION_DATE = 2026-01-01T00:00:00", "ORIGINATOR = TEST", "META_START",
+                 "OBJECT_NAME = A", "OBJECT_ID = 2026-001A", "CENTER_NAME = EARTH", "REF_FRAME = GCRF", "TIME_SYSTEM = UTC",
+                 "START_TIME = 2026-03-01T00:00:00", "STOP_TIME = 2026-03-01T23:59:00", "META_STOP"]
+        for k in range(24 * 60):
+            anomaly = n * 60 * k
+            for _ in range(40):
+                anomaly -= (anomaly - e * math.sin(anomaly) - n * 60 * k) / (1 - e * math.cos(anomaly))
+            speed = n * a / (1 - e * math.cos(anomaly))
+            across = math.sqrt(1 - e * e)
+            lines.append(f"2026-03-01T{k // 60:02}:{k % 60:02}:00 {a * (math.cos(anomaly) - e):.9f} {a * across * math.sin(anomaly):.9f} "
+                         f"0 {-speed * math.sin(anomaly):.12f} {speed * across * math.cos(anomaly):.12f} 0")
+        self.write("circle.oem", "\n".join(lines) + "\n")
+        self.write("bay.toml", MISSION.replace("T12:00:00", "T00:00:00").replace("060T13:30:00", "060T23:59:00").replace(
+            "step = 900", f"step = {period / 3:.3f}"))
+        facts = self.json("inspect", "bay.toml")["mission"]
+        self.assertAlmostEqual(facts["period_s"], period, delta=0.01)
+        positions = [c["position_deg"] for c in self.json(
+            "study", "orbit", "bay.toml", "-o", "out", "--size", "8x8", "--camera", "B")["conditions"]]
+        self.assertEqual(len(positions), 12)
+        # The Sun goes 1 deg a day, 0.3 deg in a period.
+        for k in range(9):
+            self.assertAlmostEqual(positions[k + 3] - positions[k], 360, delta=0.5)
+        self.assertEqual(positions, sorted(positions))
 
     def test_a_study_file_has_its_own_time(self):
         self.write("study.toml", 'format = 1\nscene = "bay.toml"\ncameras = ["B"]\nsize = "12x12"\nwanted = ["box>=0.01"]\n'
@@ -185,6 +233,12 @@ class Missions(program.Case):
         # epoch, which is the start: 51.6416 deg and 95.565 deg give 51.3 deg; the geodetic latitude
         # is 0.19 deg more.
         self.assertAlmostEqual(facts["latitude_deg"], 51.5, delta=0.2)
+        # SGP4 is evaluated at microseconds, and the dates have them.
+        self.script("tle_to_oem.py", "iss.tle", "-o", "fine.oem", "--start", "2008-09-20T12:25:40", "--stop",
+                    "2008-09-20T12:25:42", "--step", "0.3333333", python=python)
+        dates = [line.split()[0] for line in (self.folder / "fine.oem").read_text(encoding="utf-8").splitlines()
+                 if line.startswith("2008")]
+        self.assertEqual(dates[:3], [f"2008-09-20T12:25:40.{fraction}" for fraction in ("000000", "333333", "666667")])
         old = subprocess.run([python, SCRIPTS / "tle_to_oem.py", "iss.tle", "-o", "x.oem", "--start", "2026-03-01T12:00:00",
                               "--stop", "2026-03-01T13:00:00"], cwd=self.folder, capture_output=True, text=True, check=False)
         self.assertEqual(old.returncode, 1)

@@ -100,6 +100,12 @@ class Motion(program.Case):
             self.assertAlmostEqual(row[30], FULL, delta=1)
             self.assertAlmostEqual(row[33], 0, delta=1)
 
+    def test_instants_are_a_pixel_apart_along_the_finer_side_of_pixels(self):
+        """Pixels four times as high as wide: the motion of 8 px counts, not the 2 px that it would have upright."""
+        self.check_ramp(self.rows(self.picture(
+            object="velocity = [0.25, 0, 0]", camera="fy = 17\nexposure_s = 1",
+            quality=("--set", "quality.camera_samples=2048", "--no-error"))))
+
     def test_a_moving_face_hides_the_face_that_it_lies_on(self):
         """A black floor in the plane of the panel: an emitter is in front of it, at each instant where it is then. The edge
         goes from 16 to 48 px."""

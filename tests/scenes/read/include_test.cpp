@@ -19,7 +19,7 @@ constexpr const char* quad =
     "[[object]]\nname = \"floor\"\nshape = \"quad\"\nmaterial = \"white\"\n"
     "corners = [[0,0,0],[1,0,0],[1,1,0],[0,1,0]]\n";
 
-TEST_F(IncludedFiles, EntriesComeBeforeTheScenesAndItsOwnReplaceThem) {
+TEST_F(IncludedFiles, EntriesFollowTheScenesOwnWhichReplaceThem) {
   folder.put("paint.toml",
              "[[material]]\nname = \"white\"\ndiffuse = 0.8\n"
              "[[material]]\nname = \"black\"\ndiffuse = 0.1\n[quality]\nerror = 0.1\n");
@@ -35,9 +35,9 @@ TEST_F(IncludedFiles, EntriesComeBeforeTheScenesAndItsOwnReplaceThem) {
                       quad,
                   {"material.black.diffuse=0.2"});
   ASSERT_EQ(own.materials.size(), 2U);
-  EXPECT_EQ(own.materials[0].name, "black");
-  EXPECT_EQ(own.materials[0].diffuse, Rgb(0.2));
-  EXPECT_EQ(own.materials[1].diffuse, Rgb(0.5));
+  EXPECT_EQ(own.materials[0].diffuse, Rgb(0.5));
+  EXPECT_EQ(own.materials[1].name, "black");
+  EXPECT_EQ(own.materials[1].diffuse, Rgb(0.2));
   EXPECT_EQ(own.quality.error, 0.2);
 }
 
@@ -51,8 +51,27 @@ TEST_F(IncludedFiles, FileNamesAreRelativeToTheFileThatHasThem) {
              "[[object]]\nname = \"one\"\nmesh = \"meshes/q.obj\"\nmaterial = \"white\"\n");
   const Scene scene = folder.read("format = 1\ninclude = [\"parts/one.toml\"]\n");
   ASSERT_EQ(scene.objects.size(), 2U);
-  EXPECT_EQ(scene.objects[0].name, "two");
+  EXPECT_EQ(scene.objects[0].name, "one");
+  EXPECT_EQ(scene.objects[1].name, "two");
   EXPECT_EQ(scene.objects[1].area_m2, 0.5);
+}
+
+// The first camera is the one that commands use without --camera. Of two files the later one replaces.
+TEST_F(IncludedFiles, CamerasAreInTheOrderSceneFirstFileSecondFile) {
+  const auto camera = [](const char* name, int x) {
+    return fmt::format(
+        "[[camera]]\nname = \"{}\"\nposition = [{}, 0, 3]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\n",
+        name, x);
+  };
+  folder.put("one.toml", camera("a", 1) + camera("b", 1));
+  folder.put("two.toml", camera("c", 2) + camera("a", 2) + camera("own", 2));
+  const Scene scene =
+      folder.read("format = 1\ninclude = [\"one.toml\", \"two.toml\"]\n" + camera("own", 0));
+  std::vector<std::pair<std::string, double>> found;
+  for (const Camera& one : scene.cameras) found.emplace_back(one.name, one.position.x);
+  const std::vector<std::pair<std::string, double>> expected = {
+      {"own", 0.0}, {"b", 1.0}, {"c", 2.0}, {"a", 2.0}};
+  EXPECT_EQ(found, expected);
 }
 
 TEST_F(IncludedFiles, WhatCannotBeIncludedIsRefused) {

@@ -200,6 +200,23 @@ TEST_F(MovingScene, TracksMoveAndTurnBetweenRows) {
   EXPECT_LT(off(scene.vertices[0], Vec3(5 + h - 2 * h, h + 2 * h, 3)), 1e-9);
 }
 
+// Between rows a turn is the shorter way: 0 to 360 deg stands, 0 to 180 deg is even.
+TEST_F(MovingScene, TracksThatTurnByMoreThanHalfATurnBetweenRowsAreNamed) {
+  const auto warnings = [&](const std::string& rows) {
+    folder.put("v.csv", "utc,x,y,z,rotate_x,rotate_y,rotate_z\n" + rows);
+    return read("[[track]]\nname = \"v\"\nposes = \"v.csv\"\n" + quad_on("v"),
+                "2026-03-01T12:05:00")
+        .warnings;
+  };
+  EXPECT_TRUE(
+      warnings("2026-03-01T12:00:00,0,0,0,0,0,-90\n2026-03-01T12:10:00,0,0,0,0,0,90\n").empty());
+  const auto named = warnings(
+      "2026-03-01T12:00:00,0,0,0,0,0,0\n2026-03-01T12:10:00,0,0,0,0,0,360\n"
+      "2026-03-01T12:20:00,0,0,0,200,0,360\n2026-03-01T12:30:00,0,0,0,200,90,360\n");
+  ASSERT_EQ(named.size(), 1U);
+  EXPECT_TRUE(holds(named[0], {"v.csv:3: ", "360 deg", "1 more such", "shorter way"})) << named[0];
+}
+
 // A visitor on the spacecraft's own circle, d ahead by the angle a: R sin a along the motion, which
 // is -x of bay-to-earth, and R (1 - cos a) toward the Earth, its z.
 TEST_F(MovingScene, VisitorIsPlacedRelativeToTheSceneByItsTrajectory) {

@@ -154,5 +154,20 @@ TEST(Astronomy, GroundPointOfTheZeroMeridian) {
   EXPECT_NEAR(point.height_m, 400e3, 1e-3);
 }
 
+// To the nearest millisecond, also over the end of a day and of a leap second.
+TEST(Astronomy, DatesAreRoundedOnce) {
+  const std::pair<const char*, const char*> rounded[] = {
+      {"2026-03-01T12:00:00.123456", "2026-03-01T12:00:00.123Z"},
+      {"2026-03-01T12:00:00.123499", "2026-03-01T12:00:00.123Z"},
+      {"2026-03-01T12:00:00.123501", "2026-03-01T12:00:00.124Z"},
+      {"2026-03-01T12:00:00.0996", "2026-03-01T12:00:00.1Z"},
+      {"2026-03-01T12:00:00.000499", "2026-03-01T12:00:00Z"},
+      {"2026-03-01T23:59:59.9996", "2026-03-02T00:00:00Z"},
+      {"2016-12-31T23:59:59.9996", "2016-12-31T23:59:60Z"},
+      {"2016-12-31T23:59:60.4994", "2016-12-31T23:59:60.499Z"},
+      {"2016-12-31T23:59:60.9996", "2017-01-01T00:00:00Z"}};
+  for (const auto& [exact, text] : rounded) EXPECT_EQ(utc_text(of_utc(exact)), text) << exact;
+}
+
 }  // namespace
 }  // namespace earthshine::scenes

@@ -92,6 +92,67 @@ TEST(Moonlight, HasTheDatesOfFullAndNewMoon) {
   EXPECT_GT(phase("2026-03-19T01:23:00"), 174.0);  // the Moon is up to 5.1 deg from the ecliptic
 }
 
+// Of the total eclipse of 2026 March 3 the Moon is in the penumbra from 8:44 to 14:23 UTC, in part
+// in the umbra from 9:50, and whole from 11:04 to 12:03 (Espenak and Meeus, "Five millennium canon of
+// lunar eclipses", NASA/TP-2009-214172). The share of its centre falls from 1 to 0 from 9:00 to 10:30
+// and is symmetric about 11:34. The full Moon of 2026 May 31, at 8:45, has no eclipse.
+TEST(Moonlight, IsTheShareOfTheSunThatTheEarthLeavesTheMoon) {
+  const test::SceneFolder folder;
+  // Begins at the right ascension 220 deg, the Moon near 163 deg: not behind the Earth.
+  const test::Ellipse ellipse{.node_deg = 220.0};
+  const auto scene_at = [&](const std::string& date) {
+    folder.put("t.oem", test::oem_of(ellipse, *read_instant(date, TimeSystem::Utc), 60.0, 20));
+    return folder.read("format = 1\n[moon]\n[orbit]\ntrajectory = \"t.oem\"\n");
+  };
+  const auto share = [&](const std::string& date) {
+    const Scene scene = scene_at(date);
+    const Instant t = *read_instant(date, TimeSystem::Utc);
+    const Vec3 moon = moon_position_m(t), sun = sun_direction(t) * sun_distance_m(t);
+    const Vec3 away = moon - mission_of(scene)->trajectory->at(t).position_m;
+    return scene.moon->illuminance_lx.g /
+           moon_illuminance_lx(Sun().illuminance_lx, scene.moon->phase_deg, glm::length(away),
+                               glm::length(sun - moon))
+               .g;
+  };
+  for (const char* bright : {"2026-03-03T08:40:00", "2026-03-03T14:27:00", "2026-05-31T08:45:00"}) {
+    EXPECT_NEAR(share(bright), 1.0, 1e-9) << bright;
+  }
+  for (const char* dark : {"2026-03-03T11:04:00", "2026-03-03T11:34:00", "2026-03-03T12:03:00"}) {
+    EXPECT_EQ(share(dark), 0.0) << dark;
+  }
+  const double before = share("2026-03-03T10:00:00");
+  EXPECT_GT(before, 0.05);
+  EXPECT_LT(before, 0.95);
+  EXPECT_NEAR(share("2026-03-03T13:07:30"), before, 0.05);
+  const Scene eclipsed = scene_at("2026-03-03T11:34:00");
+  for (const EffectRow& row : describe_effects(eclipsed, find_light_groups(eclipsed), {})) {
+    if (row.effect != "distant lamps") continue;
+    EXPECT_FALSE(row.runs);
+    EXPECT_TRUE(test::holds(row.reason, {"0 of 1", "Earth's shadow"})) << row.reason;
+  }
+}
+
+// 2026: perihelion January 3, 0.98330 au; aphelion July 6, 1.01664 au (US Naval Observatory). In low
+// orbit the distance differs by up to 4.5e-5 of it.
+TEST(Sunlight, FollowsItsDistanceByDateUnlessTheSceneGivesIt) {
+  const test::SceneFolder folder;
+  for (const auto& [date, units] :
+       {std::pair("2026-01-03T17:16:00", 0.98330), {"2026-07-06T17:30:00", 1.01664}}) {
+    folder.put("t.oem",
+               test::oem_of(test::Ellipse(), *read_instant(date, TimeSystem::Utc), 60.0, 20));
+    const std::string orbit = "[orbit]\ntrajectory = \"t.oem\"\n";
+    const Sun open = *folder.read("format = 1\n" + orbit).sun;
+    EXPECT_NEAR(open.illuminance_lx.g * units * units / 133100.0, 1.0, 1.2e-4);
+    EXPECT_NEAR(open.angular_radius_deg * units / 0.2666, 1.0, 6e-5);
+    const Sun bright = *folder.read("format = 1\n[sun]\nilluminance = 1000\n" + orbit).sun;
+    EXPECT_EQ(bright.illuminance_lx, Rgb(1000.0));
+    EXPECT_EQ(bright.angular_radius_deg, open.angular_radius_deg);
+    const Sun wide = *folder.read("format = 1\n[sun]\nangular_radius_deg = 0.3\n" + orbit).sun;
+    EXPECT_EQ(wide.illuminance_lx, open.illuminance_lx);
+    EXPECT_EQ(wide.angular_radius_deg, 0.3);
+  }
+}
+
 // A Lambert Earth by moonlight alone: at the point below the spacecraft, the Moon in the zenith and
 // the Sun on the other side, L = albedo E / pi.
 TEST(Moonlight, LightsTheEarthAsTheSunDoes) {

@@ -14,6 +14,7 @@ namespace {
 using test::Ellipse;
 using test::holds;
 using test::oem_of;
+using test::oem_row;
 
 const Instant epoch = *read_instant("2026-03-01T12:00:00", TimeSystem::Utc);
 
@@ -159,6 +160,68 @@ TEST_F(MissionScene, MomentsGoFromStartToStop) {
   const Scene late = folder.read("format = 1\n[orbit]\ntrajectory = \"late.oem\"\n");
   EXPECT_EQ(utc_text(mission_of(late)->time.start), "2026-03-01T12:00:30Z");
   EXPECT_EQ(mission_of(late)->time.count(), 1U);
+}
+
+// From the perigee on: k / 2 periods are k half revolutions, in which the speed changes 6.4 times,
+// (1 + e) / (1 - e). Vis-viva has the period from every state.
+TEST_F(MissionScene, RevolutionsOfAnEllipseAreThoseOfItsOwnPeriod) {
+  for (const double eccentricity : {0.0, 0.73}) {
+    const Ellipse ellipse{24400e3, eccentricity, 7.0, 100.0};
+    const double period = 2.0 * base::pi / ellipse.mean_motion_rad_s();
+    folder.put("t.oem", oem_of(ellipse, epoch, 60.0, 1600));
+    const Scene scene = folder.read("format = 1\n[orbit]\ntrajectory = \"t.oem\"\n");
+    const Mission& mission = *mission_of(scene);
+    for (int k = 0; k <= 5; ++k) {
+      EXPECT_NEAR(revolved_deg(mission, epoch, epoch + 0.5 * k * period), 180.0 * k, 1e-3);
+      EXPECT_NEAR(*period_at(mission, epoch + 0.4 * k * period), period, 0.05);
+    }
+    EXPECT_NEAR(revolved_deg(mission, epoch + 0.7 * period, epoch + 1.7 * period), 360.0, 1e-3);
+  }
+}
+
+// A long ellipse is slow almost everywhere: with e = 0.95 half of the revolution takes 1/50 of the
+// period, far less than the 36 deg of its apogee's rate.
+TEST_F(MissionScene, RevolutionsOfALongEllipseAreCounted) {
+  const Ellipse ellipse{150000e3, 0.95, 28.5, 0.0};
+  const double period = 2.0 * base::pi / ellipse.mean_motion_rad_s();
+  folder.put("t.oem", oem_of(ellipse, epoch, 300.0, 4000));
+  const Scene scene = folder.read("format = 1\n[orbit]\ntrajectory = \"t.oem\"\n");
+  for (const double start : {0.0, 0.3, 0.5, 0.9}) {
+    EXPECT_NEAR(
+        revolved_deg(*mission_of(scene), epoch + start * period, epoch + (start + 1.0) * period),
+        360.0, 0.01)
+        << start;
+  }
+}
+
+// States 2.3 revolutions apart, in two segments or in one.
+TEST_F(MissionScene, RevolutionsInGapsFollowFromThePeriod) {
+  const double period = 2.0 * base::pi / circle.mean_motion_rad_s();
+  const double gap = std::round(2.3 * period), expected = 360.0 * (120.0 + gap) / period;
+  const auto rows = [&](double from) {
+    std::string text;
+    for (const double s : {from, from + 60.0}) text += oem_row(utc_text(epoch + s), circle.at(s));
+    return text;
+  };
+  const std::string start = utc_text(epoch), stop = utc_text(epoch + (120.0 + gap));
+  const std::string pieces[] = {test::oem_meta(start, utc_text(epoch + 60.0)) + rows(0.0) +
+                                    test::oem_meta(utc_text(epoch + (60.0 + gap)), stop) +
+                                    rows(60.0 + gap),
+                                test::oem_meta(start, stop) + rows(0.0) + rows(60.0 + gap)};
+  for (const std::string& piece : pieces) {
+    folder.put("t.oem", test::oem_head + piece);
+    const Scene scene = folder.read("format = 1\n[orbit]\ntrajectory = \"t.oem\"\n");
+    EXPECT_NEAR(revolved_deg(*mission_of(scene), epoch, epoch + (120.0 + gap)), expected, 1e-3);
+  }
+}
+
+// 12 km/s at 7000 km, where sqrt(2 GM / r) = 10.67 km/s is enough to leave.
+TEST_F(MissionScene, AHyperbolaHasNoPeriod) {
+  folder.put("t.oem", test::oem_head +
+                          test::oem_meta("2026-03-01T12:00:00", "2026-03-01T12:00:00") +
+                          oem_row("2026-03-01T12:00:00", {{7e6, 0.0, 0.0}, {0.0, 12e3, 0.0}}));
+  const Scene scene = folder.read("format = 1\n[orbit]\ntrajectory = \"t.oem\"\n");
+  EXPECT_FALSE(period_at(*mission_of(scene), epoch));
 }
 
 TEST_F(MissionScene, DatesOfTomlAreUtc) {

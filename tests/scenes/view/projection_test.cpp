@@ -99,5 +99,28 @@ TEST(Projection, DoesNotFold) {
   EXPECT_FALSE(Projection(camera, 640, 480).covers_picture());
 }
 
+// A pinhole at the angle a from the axis: f / cos^2 a away from the axis, f / cos a around it.
+// Through a fisheye lens r = f (a + k a^3): f (1 + 3 k a^2) away, r / sin a around. With k1 alone,
+// Brown and Conrady's lens stretches the pinhole's radius t by 1 + 3 k1 t^2.
+TEST(Projection, PixelsPerRadianAreThoseOfTheLensAndOfTheFinerSide) {
+  Camera camera = calibrated(Distortion::None, {});
+  camera.intrinsics = {480.0, 30.0, 320.0, 240.0};
+  const Projection tall(camera, 640, 480);
+  const auto at = [](double deg) {
+    return Vec3(std::sin(base::radians(deg)), 0.0, std::cos(base::radians(deg)));
+  };
+  EXPECT_NEAR(tall.px_per_rad({0, 0, 1}, 640, 480), 480.0, 1e-4);
+  EXPECT_NEAR(tall.px_per_rad(at(60), 640, 480), 480.0 * 4.0, 1e-3);
+  const Vec3 upward(0.0, at(60).x, at(60).z);
+  EXPECT_NEAR(tall.px_per_rad(upward, 640, 480), 480.0 * 2.0, 1e-3);
+  EXPECT_NEAR(tall.px_per_rad(at(76), 1280, 960), 2.0 * 480.0 / std::pow(at(76).z, 2), 0.1);
+  const double f = 250.0, a = base::radians(50.0), t = std::tan(a);
+  const Projection fish(wide(calibrated(Distortion::Fisheye, {-0.02, 0, 0, 0, 0})), 640, 480);
+  EXPECT_NEAR(fish.px_per_rad(at(50), 640, 480), f * (a - 0.02 * a * a * a) / std::sin(a), 1e-3);
+  const Projection barrel(wide(calibrated(Distortion::BrownConrady, {0.05, 0, 0, 0, 0})), 640, 480);
+  EXPECT_NEAR(barrel.px_per_rad(at(50), 640, 480),
+              f * (1.0 + 3.0 * 0.05 * t * t) / std::pow(std::cos(a), 2), 1e-2);
+}
+
 }  // namespace
 }  // namespace earthshine::scenes
