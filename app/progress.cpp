@@ -75,8 +75,7 @@ std::string cut_in_middle(const std::string& line, std::size_t columns) {
          (tail < starts.size() ? line.substr(starts[tail]) : "");
 }
 
-Progress::Progress(bool quiet)
-    : shown_(!quiet && notes_are_on_a_terminal()) {
+Progress::Progress(bool quiet) : shown_(!quiet && notes_are_on_a_terminal()) {
   if (!shown_) return;
   // Signals are for the thread that works: they wake what it waits for.
   sigset_t all, before;

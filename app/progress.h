@@ -61,7 +61,7 @@ class Progress {
   using Clock = std::chrono::steady_clock;
   [[nodiscard]] double now() const;
   [[nodiscard]] double slowdown() const;  // of the machine by others
-  void draw();  // with mutex_ held
+  void draw();                            // with mutex_ held
   void keep_drawing();
 
   bool shown_;
