@@ -2,52 +2,16 @@
 // node check.mjs PAGE.html EXPECTED.json [FOLDER]: opens a console's page in headless Chromium and compares its
 // pictures with the program's (tests/cli/console_browser.py writes EXPECTED.json); keyboard, link, undo, axe.
 // Screenshots go to FOLDER. Exit code 0 all well, 1 something is wrong, 77 there is no browser or no node_modules.
-import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
-import { createRequire } from "node:module";
-import { dirname, join, resolve } from "node:path";
-import { fileURLToPath, pathToFileURL } from "node:url";
+import { readFileSync, writeFileSync } from "node:fs";
+import { resolve } from "node:path";
+import { pathToFileURL } from "node:url";
 
-const skip = (why) => {
-  console.log(`skipped: ${why}`);
-  process.exit(77);
-};
-const browserPath = ["/usr/bin/chromium", "/usr/bin/google-chrome"].find((path) => existsSync(path));
-if (!browserPath) skip("no Chromium at /usr/bin/chromium");
-const modules = createRequire(join(dirname(fileURLToPath(import.meta.url)), "../report/package.json"));
-let chromium;
-try {
-  ({ chromium } = modules("playwright-core"));
-} catch {
-  skip("playwright-core is not in report/node_modules");
-}
-const axeText = readFileSync(modules.resolve("axe-core/axe.min.js"), "utf8");
+import { axe, check, end, newPage, screenshot } from "./browser.mjs";
 
 const [pageFile, expectedFile, folder] = process.argv.slice(2);
-if (folder) mkdirSync(folder, { recursive: true });
 const expected = JSON.parse(readFileSync(expectedFile, "utf8"));
-let faults = 0;
-const check = (holds, what, found = "") => {
-  console.log(`${holds ? "ok   " : "FAULT"} ${what}${found === "" ? "" : `: ${found}`}`);
-  if (!holds) ++faults;
-};
-
-// WebGL2 by software, so that a machine without graphics runs the shader too.
-const browser = await chromium.launch({
-  executablePath: browserPath, args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-});
 const open = async ({ fragment = "", withoutGpu = false, file = pageFile, ...options } = {}) => {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
-  const page = await context.newPage();
-  const complaints = [];
-  page.on("console", (message) => {
-    // Software rendering is slow to read back, and says so.
-    const known = /GPU stall due to ReadPixels|Canvas2D: Multiple readback/.test(message.text());
-    if (["error", "warning"].includes(message.type()) && !known) complaints.push(message.text());
-  });
-  page.on("pageerror", (error) => complaints.push(String(error)));
-  page.on("request", (request) => {
-    if (!/^(file|data|blob):/.test(request.url())) complaints.push(`request of ${request.url()}`);
-  });
+  const { page, context, complaints } = await newPage(options, (url) => /^(file|data|blob):/.test(url));
   if (withoutGpu) {
     await page.addInitScript(() => {
       const real = HTMLCanvasElement.prototype.getContext;
@@ -175,13 +139,6 @@ const checkVerdicts = async ({ page: file, cases }) => {
   await context.close();
 };
 
-const axe = async (page, what) => {
-  await page.evaluate(axeText);
-  const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
-  check(violations.length === 0, `${what}: axe finds nothing`,
-    violations.map((v) => `${v.id} (${v.nodes.length}): ${v.nodes[0].html.slice(0, 160)}`).join("\n      "));
-};
-
 const checkUse = async () => {
   const { page, context, complaints, seconds } = await open();
   check(seconds < 2 * expected.patience, "the first picture stands within 2 s", `${seconds} s`);
@@ -235,7 +192,7 @@ const checkLooks = async (name, options) => {
   await axe(page, name);
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   check(wide <= 0, `${name}: nothing sticks out`, `${wide} px`);
-  if (folder) await page.screenshot({ path: join(folder, `console-${name}.png`) });
+  await screenshot(page, folder, `console-${name}`);
   check(complaints.length === 0, `${name}: no error, no request`, complaints.join("; "));
   await context.close();
 };
@@ -263,6 +220,4 @@ await checkLooks("light", { colorScheme: "light", fragment: "view=monitor" });
 await checkLooks("false-colours", { colorScheme: "dark", fragment: "top=2" });
 await checkLooks("study", { colorScheme: "light", file: expected.verdicts[1].page });
 await checkLooks("tablet", { colorScheme: "light", viewport: { width: 820, height: 1180 } });
-await browser.close();
-console.log(faults === 0 ? "all well" : `${faults} faults`);
-process.exit(faults === 0 ? 0 : 1);
+await end();

@@ -166,6 +166,8 @@ struct Lamp {
   std::string source;                            // measured: the file, as the scene names it
   Motion motion;                                 // turns about its position
   Rgb illuminance_lx{0.0};                       // distant: on an unoccluded plane that faces it
+  std::string joint;                             // that it hangs on; empty: none
+  std::string object;                            // whose mesh file has it; empty: the scene file
 
   [[nodiscard]] bool is_distant() const { return kind == LampKind::Distant; }
   // 0 without light; in the unit of the lamp's kind.
@@ -290,6 +292,8 @@ struct Camera {
   double open_until_s = std::numeric_limits<double>::infinity();
   base::Location where;  // of its position in the scene file
   std::optional<base::Location> cctv_at, range_sensor_at;
+  std::string joint;   // that it hangs on; empty: none
+  std::string object;  // whose mesh file has it; empty: the scene file
 };
 
 // A [[cctv]], [monitor] or [[range_sensor]] table as written; degrade/ knows its keys and checks
@@ -325,6 +329,7 @@ struct Scene {
   std::filesystem::path path;
   std::vector<std::filesystem::path> files;  // all files read: the scene, meshes, tables, ...
   std::string name;
+  double unit_m = 1.0;  // of lengths in the file
   std::vector<Vec3> vertices;
   std::vector<glm::vec2> vertex_uv;      // u, v (down) per vertex; empty: no textures
   std::vector<glm::vec2> second_uv;      // second set, for emission; empty: none
@@ -333,7 +338,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Object> objects;
   std::vector<FacePair> coincident;  // ascending, a < b
-  // Of the triangles; null if no object has a velocity or spin, which change `coincident`.
+  // Of the triangles, for objects that move, which changes `coincident`.
   std::shared_ptr<const FaceParts> face_parts;
   std::vector<Lamp> lamps;
   std::vector<Area> areas;

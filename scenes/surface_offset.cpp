@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "base/parallel.h"
+
 namespace earthshine::scenes {
 namespace {
 
@@ -119,15 +121,18 @@ double surface_offset_m(const Scene& scene, std::uint32_t triangle, const Vec3& 
 SurfaceOffsets::SurfaceOffsets(const Scene& scene, const std::optional<Vec3>& centre) {
   if (scene.triangles.empty()) return;
   centre_ = centre ? *centre : centre_of_detail(scene);
-  offset_m_.reserve(scene.triangles.size());
-  contact_m_.reserve(scene.triangles.size());
-  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
-    const double offset = surface_offset_m(scene, t, centre_),
-                 size = glm::length(extent_of(corners_of(scene, t)));
-    offset_m_.push_back(static_cast<float>(offset));
-    contact_m_.push_back(
-        static_cast<float>(std::max(offset, std::min(most_contact_m, contact_share * size))));
-  }
+  offset_m_.resize(scene.triangles.size());
+  contact_m_.resize(scene.triangles.size());
+  base::parallel_chunks(scene.triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto triangle = static_cast<std::uint32_t>(t);
+      const double offset = surface_offset_m(scene, triangle, centre_),
+                   size = glm::length(extent_of(corners_of(scene, triangle)));
+      offset_m_[t] = static_cast<float>(offset);
+      contact_m_[t] =
+          static_cast<float>(std::max(offset, std::min(most_contact_m, contact_share * size)));
+    }
+  });
 }
 
 double SurfaceOffsets::contact(std::uint32_t a, std::uint32_t b) const {

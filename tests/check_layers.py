@@ -17,7 +17,7 @@ import sys
 # folder.
 ROOMS = {
     "base": [".", "numbers", "ranks", "input", "files", "pixels"],
-    "scenes": ["texture", ".", "view", "text", "reflect", "light", "mesh/gltf", "mesh", "sky", "time", "effects", "health", "round", "plausible", "read"],
+    "scenes": ["texture", ".", "view", "text", "reflect", "light", "mesh/gltf", "mesh", "sky", "time", "effects", "health", "round", "plausible", "read", "pose"],
     "radiosity": ["patches", "bodies", "factors", "objects", "direct", ".", "store", "exact/polygon",
                   "exact/occlusion", "exact"],
     "raytrace": ["camera", "frame", "light", "incoming", "surfaces", "solve_control", "paths", "share", "gather", "shade",

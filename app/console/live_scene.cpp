@@ -14,8 +14,13 @@
 #include "app/render/error_json.h"
 #include "app/render/light.h"
 #include "base/error.h"
+#include "raytrace/frame/first_hit.h"
 #include "raytrace/preview.h"
+#include "scenes/read/include.h"
+#include "scenes/read/override.h"
 #include "scenes/text/toml_file.h"
+#include "scenes/time/linkage.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::app {
 namespace {
@@ -93,9 +98,11 @@ LiveRequest::View view_of(const Json& json) {
 struct MovableKey {
   const char *table, *key;
   std::size_t count;
+  Moved kind;
 };
-constexpr MovableKey movable_keys[] = {
-    {"light", "position", 3}, {"object", "translate", 3}, {"joint", "angle_deg", 1}};
+constexpr MovableKey movable_keys[] = {{"light", "position", 3, Moved::Lamp},
+                                       {"object", "translate", 3, Moved::Object},
+                                       {"joint", "angle_deg", 1, Moved::Joint}};
 
 std::size_t count_of(const std::string& key) {
   for (const MovableKey& one : movable_keys) {
@@ -112,7 +119,14 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-std::string answer_of(const Json& head, const base::Image& image) {
+Json camera_json(const scenes::Camera& camera) {
+  return {{"position", to_json(camera.position)},
+          {"look_at", to_json(camera.look_at)},
+          {"up", to_json(camera.up)},
+          {"fov_deg", camera.fov_deg}};
+}
+
+std::string answer_of(const Json& head, const base::Image& image, const base::Image& layers) {
   const std::string text = dump(head);
   const auto length = static_cast<std::uint32_t>(text.size());
   std::string bytes;
@@ -120,12 +134,13 @@ std::string answer_of(const Json& head, const base::Image& image) {
     bytes.push_back(static_cast<char>((length >> shift) & 0xFFU));
   }
   bytes += text;
-  for (const char* name : {"R", "G", "B"}) {
-    const base::Channel* channel = image.find(name);
-    const std::size_t begin = bytes.size(), size = image.pixel_count() * sizeof(float);
-    bytes.resize(begin + size);
-    std::memcpy(bytes.data() + begin, channel->values.data(), size);
-  }
+  const auto append = [&bytes](const std::vector<float>& values) {
+    const std::size_t begin = bytes.size();
+    bytes.resize(begin + values.size() * sizeof(float));
+    std::memcpy(bytes.data() + begin, values.data(), values.size() * sizeof(float));
+  };
+  for (const char* name : {"R", "G", "B"}) append(image.find(name)->values);
+  for (const base::Channel& channel : layers.channels) append(channel.values);
   return bytes;
 }
 
@@ -165,15 +180,18 @@ LiveScene::LiveScene(const SceneInput& input, const Common& common)
   scene_.set(own_set_);
   scene_.read();
   cameras_ = scene_.loaded.scene.cameras;
-  lamps_ = scene_.loaded.scene.lamps;
   movables_ = movables();
   description_ = describe();
 }
 
 std::vector<LiveScene::Movable> LiveScene::movables() const {
   std::vector<Movable> found;
-  const scenes::TomlNode root = scenes::read_toml(scene_.path);
-  for (const auto& [table, key, count] : movable_keys) {
+  scenes::TomlNode root = scenes::read_toml(scene_.path);
+  std::vector<std::filesystem::path> files;
+  std::vector<scenes::LampOff> off;
+  scenes::add_includes(root, scene_.path, files);
+  for (const std::string& own : own_set_) scenes::apply_override(root, own, std::nullopt, off);
+  for (const auto& [table, key, count, kind] : movable_keys) {
     const auto* list = scenes::find_entry(std::get<scenes::TomlTable>(root.value), table);
     const auto* entries = list ? std::get_if<scenes::TomlArray>(&list->node.value) : nullptr;
     if (entries == nullptr) continue;
@@ -183,28 +201,13 @@ std::vector<LiveScene::Movable> LiveScene::movables() const {
       const auto* text = name ? std::get_if<std::string>(&name->node.value) : nullptr;
       const auto* value = scenes::find_entry(keys, key);
       // Without the key: objects and joints are at 0, a lamp without a position has none.
-      if (text == nullptr || (value == nullptr && std::string_view(table) == "light")) continue;
+      if (text == nullptr || (value == nullptr && kind == Moved::Lamp)) continue;
       std::vector<double> numbers =
           value ? scenes::numbers_of(value->node) : std::vector<double>(count, 0.0);
       if (numbers.size() != count) continue;
-      Movable& one = found.emplace_back(fmt::format("{}.{}.{}", table, *text, key), numbers);
-      const auto lamp = std::ranges::find(lamps_, *text, &scenes::Lamp::name);
-      if (std::string_view(table) != "light" || lamp == lamps_.end() ||
-          scenes::find_entry(keys, "joint") ||
-          (lamp->kind != scenes::LampKind::Point && lamp->kind != scenes::LampKind::Spot)) {
-        continue;
-      }
-      const Vec3 as_written(numbers[0], numbers[1], numbers[2]);
-      const double unit_m = glm::length(lamp->position) / glm::length(as_written);
-      if (!(glm::distance(unit_m * as_written, lamp->position) <= 1e-9 * unit_m)) continue;
-      if (lamp->kind == scenes::LampKind::Spot) {
-        const auto* aim = scenes::find_entry(keys, "aim");
-        const std::vector<double> at = aim ? scenes::numbers_of(aim->node) : std::vector<double>();
-        if (at.size() != 3) continue;
-        one.aim_m = unit_m * Vec3(at[0], at[1], at[2]);
-      }
-      one.lamp = static_cast<std::size_t>(lamp - lamps_.begin());
-      one.unit_m = unit_m;
+      Movable& one = found.emplace_back(
+          Movable{fmt::format("{}.{}.{}", table, *text, key), numbers, kind, {}, false, {}});
+      find_in_scene(one, *text, keys);
     }
   }
   return found;
@@ -213,45 +216,112 @@ std::vector<LiveScene::Movable> LiveScene::movables() const {
 Json LiveScene::describe() const {
   Json cameras = Json::array(), movables = Json::array();
   for (const scenes::Camera& camera : cameras_) {
-    cameras.push_back({{"name", camera.name},
-                       {"position", to_json(camera.position)},
-                       {"look_at", to_json(camera.look_at)},
-                       {"up", to_json(camera.up)},
-                       {"fov_deg", camera.fov_deg},
-                       {"columns", camera.columns},
-                       {"rows", camera.rows}});
+    Json& one = cameras.emplace_back(camera_json(camera));
+    one["name"] = camera.name;
+    one["columns"] = camera.columns;
+    one["rows"] = camera.rows;
   }
   for (const Movable& one : movables_) movables.push_back({{"key", one.key}, {"value", one.value}});
   const std::string& name = scene_.loaded.scene.name;
   return {{"scene", name.empty() ? std::filesystem::path(scene_.path).stem().string() : name},
           {"path", scene_.path},
+          {"unit_m", scene_.loaded.scene.unit_m},
           {"cameras", cameras},
           {"movables", movables},
           {"level_errors", level_errors}};
 }
 
-bool LiveScene::move_lamps(const LiveRequest& request) {
-  if (!scene_.is_read) return false;
-  const auto value_in = [](const Set& set, const Movable& one) {
-    const auto found = std::ranges::find(set, one.key, &Set::value_type::first);
-    return found == set.end() ? one.value : found->second;
+void LiveScene::find_in_scene(Movable& one, const std::string& name,
+                              const scenes::TomlTable& keys) const {
+  const scenes::Scene& scene = scene_.loaded.scene;
+  const auto index_in = [&](const auto& list) {
+    const auto found =
+        std::ranges::find_if(list, [&](const auto& item) { return item.name == name; });
+    return found == list.end() ? std::nullopt
+                               : std::optional(static_cast<std::size_t>(found - list.begin()));
   };
-  for (const Movable& one : movables_) {
-    if (value_in(request.set, one) != value_in(read_set_, one) && !one.lamp) return false;
-  }
-  for (const Movable& one : movables_) {
-    const std::vector<double> value = value_in(request.set, one);
-    if (value == value_in(read_set_, one)) continue;
-    scenes::Lamp& lamp = scene_.loaded.scene.lamps[*one.lamp];
-    lamp.position = one.unit_m * Vec3(value[0], value[1], value[2]);
-    if (one.aim_m) {
-      const double distance = glm::distance(*one.aim_m, lamp.position);
-      if (!(distance > 0.0)) refuse("set." + one.key, "is the lamp's own aim", {});
-      lamp.axis = (*one.aim_m - lamp.position) / distance;
+  if (one.kind == Moved::Object) {
+    one.index = index_in(scene.objects);
+    one.moves_warm = one.index.has_value();
+  } else if (one.kind == Moved::Joint) {
+    if (scene.linkage) one.index = index_in(scene.linkage->joints);
+    one.moves_warm = one.index && !scene.linkage->joints[*one.index].moves();
+  } else {
+    one.index = index_in(scene.lamps);
+    if (!one.index) return;
+    const scenes::LampKind kind = scene.lamps[*one.index].kind;
+    if (kind == scenes::LampKind::Spot) {
+      const auto* aim = scenes::find_entry(keys, "aim");
+      const std::vector<double> at = aim ? scenes::numbers_of(aim->node) : std::vector<double>();
+      if (at.size() != 3) return;
+      one.aim_m = scene.unit_m * Vec3(at[0], at[1], at[2]);
     }
-    lamps_moved_ = true;
+    one.moves_warm = kind == scenes::LampKind::Point || one.aim_m;
   }
-  return true;
+}
+
+std::optional<scenes::PoseChange> LiveScene::change_to(const Set& set) const {
+  const auto value_in = [](const Set& values, const Movable& one) {
+    const auto found = std::ranges::find(values, one.key, &Set::value_type::first);
+    return found == values.end() ? one.value : found->second;
+  };
+  scenes::PoseChange change;
+  for (const Movable& one : movables_) {
+    const std::vector<double> now = value_in(set, one), before = value_in(read_set_, one);
+    if (now == before) continue;
+    if (!one.moves_warm) return std::nullopt;
+    if (one.kind == Moved::Joint) {
+      change.joints.push_back({*one.index, now[0]});
+      continue;
+    }
+    const double unit_m = scene_.loaded.scene.unit_m;
+    const Vec3 at_m = unit_m * Vec3(now[0], now[1], now[2]);
+    const Vec3 shift_m = at_m - unit_m * Vec3(before[0], before[1], before[2]);
+    if (one.kind == Moved::Object) {
+      change.objects.push_back({*one.index, shift_m});
+      continue;
+    }
+    std::optional<Vec3> axis;
+    if (one.aim_m) {
+      if (*one.aim_m == at_m) refuse("set." + one.key, "is the lamp's own aim", {});
+      axis = glm::normalize(*one.aim_m - at_m);
+    }
+    change.lamps.push_back({*one.index, shift_m, axis});
+  }
+  return change;
+}
+
+Json LiveScene::marks() const {
+  const scenes::Scene& scene = scene_.loaded.scene;
+  std::vector<scenes::JointState> joints;
+  if (scene.linkage) joints = scenes::joints_now(scene);
+  Json marks = Json::array();
+  for (const Movable& one : movables_) {
+    if (!one.index) continue;
+    Json mark = {{"key", one.key}};
+    std::string hangs_on;
+    if (one.kind == Moved::Object) {
+      mark["object"] = *one.index;
+      mark["at"] = to_json(scenes::bounds_of(scene, scene.objects[*one.index]).middle());
+      hangs_on = scene.objects[*one.index].joint;
+    } else if (one.kind == Moved::Lamp) {
+      mark["at"] = to_json(scene.lamps[*one.index].position);
+      hangs_on = scene.lamps[*one.index].joint;
+    } else {
+      const scenes::Joint& joint = scene.linkage->joints[*one.index];
+      mark["at"] = to_json(joints[*one.index].pose.point(joint.pivot_m));
+      mark["axis"] = to_json(joints[*one.index].pose.rotation * joint.axis);
+    }
+    if (!hangs_on.empty()) {
+      const auto joint = std::ranges::find(scene.linkage->joints, hangs_on, &scenes::Joint::name);
+      const auto k = static_cast<std::size_t>(joint - scene.linkage->joints.begin());
+      for (int column = 0; column < 3; ++column) {
+        mark["rotation"].push_back(to_json(joints[k].pose.rotation[column]));
+      }
+    }
+    marks.push_back(std::move(mark));
+  }
+  return marks;
 }
 
 void LiveScene::apply(const LiveRequest& request) {
@@ -263,19 +333,22 @@ void LiveScene::apply(const LiveRequest& request) {
     changes.push_back(value.size() == 1 ? fmt::format("{}={}", key, value.front())
                                         : fmt::format("{}=[{}]", key, fmt::join(value, ", ")));
   }
-  lamps_moved_ = false;
-  if (scene_.is_read) {
-    scene_.loaded.scene.cameras = cameras_;
-    scene_.loaded.scene.lamps = lamps_;
-  }
-  if (request.level > 0 || !move_lamps(request)) {
+  if (scene_.is_read) scene_.loaded.scene.cameras = cameras_;
+  // A level's picture is that of the scene read with these values, to the byte.
+  const auto change = request.level == 0 && scene_.is_read && request.set != read_set_
+                          ? change_to(request.set)
+                          : std::nullopt;
+  if (change) {
+    if (request.set != pose_set_) scene_.pose(*change);
+  } else {
     scene_.set(std::move(changes));
+    const std::size_t reads = scene_.reads;
     scene_.read();
     read_set_ = request.set;
-    cameras_ = scene_.loaded.scene.cameras;
-    lamps_ = scene_.loaded.scene.lamps;
-    movables_ = movables();  // the file may have changed
+    if (scene_.reads > reads) movables_ = movables();  // the file may have changed
   }
+  pose_set_ = request.set;
+  cameras_ = scene_.loaded.scene.cameras;
   const auto found =
       std::ranges::find(scene_.loaded.scene.cameras, request.camera, &scenes::Camera::name);
   if (found == scene_.loaded.scene.cameras.end()) {
@@ -290,26 +363,23 @@ void LiveScene::apply(const LiveRequest& request) {
 
 base::Image LiveScene::at_once(const RenderCall& call, const scenes::Camera& camera,
                                const Size& size, Json& head) {
-  const bool same_light =
-      light_ && light_->solved && light_overrides_ == scene_.overrides && !lamps_moved_;
+  const bool same_light = light_ && light_->solved && light_set_ == pose_set_ &&
+                          (light_reads_ == scene_.reads || light_structures_ == scene_.structures);
   if (same_light) {
     head["kind"] = "patches";
     return raytrace::preview(scene_.loaded.world(*scene_.query), light_->solution,
                              raytrace::make_camera_model(camera, size.columns, size.rows));
   }
-  // Other light: the samples of a small picture. They add what the solution lacks, and the solution
-  // before the move is nearer than none if its patches are still there.
-  const bool same_patches = light_ && light_structures_ == scene_.structures &&
-                            light_->solution.columns == 3 * scene_.loaded.groups.count();
+  // Other light: the samples of a small picture. The solution before the move makes it no better
+  // (docs/console.md) and half as slow again.
   Solved none;
-  if (!same_patches) none.solution = radiosity::unsolved(scene_.loaded.groups);
+  none.solution = radiosity::unsolved(scene_.loaded.groups);
   RenderCall small = call;
   small.size = Size{std::max(16, size.columns / 4), std::max(16, size.rows / 4)};
   small.no_error = true;
   scene_.loaded.scene.quality.gather_rays = 4;
   scene_.loaded.scene.quality.camera_samples = 1;
-  const RenderContext context{small, common_, scene_.loaded, *scene_.query,
-                              same_patches ? *light_ : none};
+  const RenderContext context{small, common_, scene_.loaded, *scene_.query, none};
   head["kind"] = "samples";
   return draw_frame(context, camera, picture_options(small, common_, scene_.loaded, camera)).image;
 }
@@ -319,7 +389,8 @@ base::Image LiveScene::sampled(RenderCall& call, const scenes::Camera& camera, J
   const Solved& light = scene_.light_for(call, common_, times);
   if (Interrupt::asked()) return {};
   light_ = light;
-  light_overrides_ = scene_.overrides;
+  light_set_ = read_set_;
+  light_reads_ = scene_.reads;
   light_structures_ = scene_.structures;
   const RenderContext context{call, common_, scene_.loaded, *scene_.query, light};
   Drawn drawn = draw_picture(context, camera, times);
@@ -353,8 +424,21 @@ std::optional<std::string> LiveScene::draw(const LiveRequest& request) {
   if (Interrupt::asked() || image.channels.empty()) return std::nullopt;
   head["columns"] = image.width;
   head["rows"] = image.height;
+  base::Image layers;
+  if (request.level == 0) {
+    layers.width = request.size.columns;
+    layers.height = request.size.rows;
+    for (const char* name : {"object", "Z"}) layers.add(name);
+    raytrace::fill_first_hit(
+        scene_.loaded.scene, *scene_.query,
+        raytrace::make_camera_model(*cameras.front(), layers.width, layers.height),
+        {0, 0, layers.width, layers.height}, layers);
+    head["layers"] = {{"columns", layers.width}, {"rows", layers.height}};
+    head["camera"] = camera_json(*cameras.front());
+    head["marks"] = marks();
+  }
   head["seconds"] = seconds_since(start);
-  return answer_of(head, image);
+  return answer_of(head, image, layers);
 }
 
 }  // namespace earthshine::app

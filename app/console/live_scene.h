@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/render/warm_scene.h"
+#include "scenes/text/toml_file.h"
 
 namespace earthshine::app {
 
@@ -33,33 +34,38 @@ struct LiveRequest {
 // The wanted error of each level above 0.
 inline constexpr double level_errors[] = {0.3, 0.2, 0.1, 0.05, 0.03, 0.02};
 
+enum class Moved { Lamp, Object, Joint };
+
 class LiveScene {
  public:
   LiveScene(const SceneInput& input, const Common& common);
 
   // Cameras, and what can be moved, as the scene was at the start: for the page.
   [[nodiscard]] const Json& description() const { return description_; }
-  // A head as JSON, its length in four bytes (little-endian) before it, and planes of R, G and B as
-  // 32-bit floats. No value if a newer request came meanwhile. Throws base::Error.
+  // A head as JSON, its length in four bytes (little-endian) before it, and planes of 32-bit floats:
+  // R, G and B; with level 0 also the object and the depth, m along the camera's axis, of each pixel
+  // of the size in the request. No value if a newer request came meanwhile. Throws base::Error.
   [[nodiscard]] std::optional<std::string> draw(const LiveRequest& request);
 
  private:
   struct Movable {
     std::string key;
     std::vector<double> value;
-    // A point or a spot that hangs on no joint: its position and axis alone change. Unit of
-    // `value`, m; of a spot the point that it keeps aiming at, m.
-    std::optional<std::size_t> lamp = {};
-    double unit_m = 0.0;
-    std::optional<Vec3> aim_m = {};
+    Moved kind;
+    std::optional<std::size_t> index;  // in the scene's list
+    bool moves_warm;                   // another value needs no file
+    std::optional<Vec3> aim_m;         // of a spot: the point that it keeps aiming at
   };
+  using Set = decltype(LiveRequest::set);
   // Those of the scene's own file.
   [[nodiscard]] std::vector<Movable> movables() const;
   [[nodiscard]] Json describe() const;
+  // Where the movables of this pose are, m; of objects the middle of their bounds.
+  [[nodiscard]] Json marks() const;
   void apply(const LiveRequest& request);
-  // Moves lamps in the loaded scene and returns true if nothing else differs from it; level 0 need
-  // not read the scene again for them.
-  [[nodiscard]] bool move_lamps(const LiveRequest& request);
+  void find_in_scene(Movable& one, const std::string& name, const scenes::TomlTable& keys) const;
+  // From the scene as it was read; no value if it must be read again.
+  [[nodiscard]] std::optional<scenes::PoseChange> change_to(const Set& set) const;
   [[nodiscard]] base::Image at_once(const RenderCall& call, const scenes::Camera& camera,
                                     const Size& size, Json& head);
   [[nodiscard]] base::Image sampled(RenderCall& call, const scenes::Camera& camera, Json& head);
@@ -67,16 +73,13 @@ class LiveScene {
   Common common_;
   std::vector<std::string> own_set_;
   WarmScene scene_;
-  using Set = decltype(LiveRequest::set);
-  Set read_set_;                         // with which the scene was read
-  std::vector<scenes::Camera> cameras_;  // } as read
-  std::vector<scenes::Lamp> lamps_;      // }
-  bool lamps_moved_ = false;             // since then
+  Set read_set_, pose_set_;              // of the scene's files, and its present pose
+  std::vector<scenes::Camera> cameras_;  // of this pose
   std::vector<Movable> movables_;
   Json description_;
-  std::optional<Solved> light_;  // the latest, of `light_overrides_`
-  std::vector<std::string> light_overrides_;
-  std::size_t light_structures_ = 0;
+  std::optional<Solved> light_;  // the latest, of `light_set_`
+  Set light_set_;
+  std::size_t light_reads_ = 0, light_structures_ = 0;
   std::mutex turn_;
   std::atomic<std::uint64_t> newest_ = 0;
 };

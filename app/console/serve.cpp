@@ -23,6 +23,7 @@ namespace {
 constexpr std::size_t most_body_bytes = std::size_t{64} << 10;
 constexpr std::time_t patience_s = 5;
 constexpr std::size_t most_connections = 8;
+constexpr int no_picture = 204;  // No Content: a newer request came
 
 // 128 random bits as hexadecimal digits.
 std::string random_token() {
@@ -129,12 +130,12 @@ class Server {
       if (auto answer = scene_.draw(read_live_request(request.body))) {
         response.set_content(std::move(*answer), "application/octet-stream");
       } else {
-        say(response, 409, "a newer request came");
+        response.status = no_picture;
       }
     } catch (const base::Error& error) {
       say(response, error.blame() == base::Blame::Input ? 400 : 500, error.what());
     } catch (const Interrupt::Left&) {
-      say(response, 409, "a newer request came");
+      response.status = no_picture;
     } catch (const std::exception& error) {
       say(response, 500, error.what());
     }

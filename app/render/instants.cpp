@@ -174,7 +174,11 @@ raytrace::Frame mean_of_instants(const RenderContext& context, const scenes::Cam
     own.seed = base::mix64(options.seed ^ base::mix64(static_cast<std::uint64_t>(k))) >> 11U;
     LoadedScene moved = context.loaded;
     scenes::move_surfaces_and_lamps(moved.scene, from + 0.5 * length);
-    scenes::find_coincident_faces_again(moved.scene);
+    std::vector<bool> is_moved;
+    for (const scenes::Object& object : moved.scene.objects) {
+      is_moved.push_back(object.motion.moves());
+    }
+    scenes::find_coincident_faces_again(moved.scene, is_moved);
     if (moved.scene.quality.error) {
       moved.scene.quality.error =
           std::min(most_error, *moved.scene.quality.error * std::sqrt(of_row));

@@ -18,12 +18,16 @@ void WarmScene::set(std::vector<std::string> changes) {
 }
 
 void WarmScene::read() {
-  if (is_read) return;
-  scenes::Scene scene =
-      text ? scenes::read_scene_text(*text, path, overrides) : scenes::read_scene(path, overrides);
-  loaded = check_scene(std::move(scene));
-  ++reads;
+  if (is_read && !as_read_) return;
+  if (is_read) {
+    loaded.scene = std::move(*as_read_);
+  } else {
+    loaded = check_scene(text ? scenes::read_scene_text(*text, path, overrides)
+                              : scenes::read_scene(path, overrides));
+    ++reads;
+  }
   is_read = true;
+  as_read_.reset();
   quality = loaded.scene.quality;
   warnings = loaded.scene.warnings;
   view_warnings_.clear();
@@ -34,6 +38,16 @@ void WarmScene::read() {
   query.reset();
   query.emplace(loaded.scene);
   shape_ = std::move(parts);
+  ++structures;
+}
+
+void WarmScene::pose(const scenes::PoseChange& change) {
+  const bool was_moved = shape_.empty();
+  if (!as_read_) as_read_ = loaded.scene;
+  loaded.scene = scenes::posed_scene(*as_read_, change);
+  if (!change.moves_surfaces() && !was_moved) return;
+  query.emplace(loaded.scene);
+  shape_.clear();
   ++structures;
 }
 

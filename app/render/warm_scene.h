@@ -11,6 +11,7 @@
 
 #include "app/call/render_call.h"
 #include "app/render/kept_lights.h"
+#include "scenes/pose/posed_scene.h"
 #include "scenes/ray_query.h"
 
 namespace earthshine::app {
@@ -31,6 +32,9 @@ struct WarmScene {
   // and the solutions that are still valid.
   void set(std::vector<std::string> changes);
   void read();
+  // Moves parts of the scene as it was read, until the next call or read(). Other poses than the
+  // one that was read are within rounding of a scene that is read with these values.
+  void pose(const scenes::PoseChange& change);
   // Prepares the scene for a call: decides its effects, and checks its views as `render` does.
   void prepare(const RenderCall& call, const std::vector<const scenes::Camera*>& cameras,
                bool draws, std::optional<double> error);
@@ -39,7 +43,8 @@ struct WarmScene {
                                         StageTimes& times);
 
  private:
-  std::vector<std::uint64_t> shape_;  // digests of what `query` depends on
+  std::vector<std::uint64_t> shape_;      // digests of what `query` depends on; empty: a pose's
+  std::optional<scenes::Scene> as_read_;  // while `loaded` has another pose
   std::map<std::string, std::vector<std::string>> view_warnings_;  // by camera, of this scene
 };
 

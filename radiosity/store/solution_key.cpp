@@ -89,8 +89,8 @@ std::uint64_t lights(const Scene& scene, const scenes::LightGroups& groups) {
   for (const std::string& name : groups.names) digest.add(std::string_view(name));
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
     const auto& [name, group, kind, position, axis, intensity_cd, beam_deg, field_deg, edge_u,
-                 edge_v, radius_m, exitance, c0, photometry, source, motion, illuminance_lx] =
-        scene.lamps[k];
+                 edge_v, radius_m, exitance, c0, photometry, source, motion, illuminance_lx, joint,
+                 object] = scene.lamps[k];
     digest.add(std::uint64_t{groups.lamp[k]});
     digest.add(static_cast<std::uint64_t>(kind));
     for (const Vec3& v : {position, axis, intensity_cd, edge_u, edge_v, exitance, illuminance_lx})

@@ -85,18 +85,31 @@ class Coincidence {
   Coincidence(Scene& scene, const FaceParts& parts)
       : scene_(scene), parts_(parts), offsets_(scene), centre_(scene.vertices.front()) {}
 
-  void find() {
+  // Pairs with a triangle of an object that is moved; all pairs if none is.
+  void find(const std::vector<bool>& is_moved = {}) {
     if (parts_.kind.size() < 2) return;
+    is_moved_ = is_moved;
+    Box around;  // the moved triangles
+    for (std::uint32_t t = 0; !is_moved_.empty() && t < scene_.triangles.size(); ++t) {
+      if (!concerns(t, t)) continue;
+      const auto [low, high] = box_of(t);
+      around.add(Vec3(low)), around.add(Vec3(high));
+    }
     base::check_room(scene_.triangles.size() * 2 * sizeof(LabelledBox), scene_.path.string());
     std::vector<LabelledBox> boxes;
     boxes.reserve(scene_.triangles.size());
     for (std::uint32_t t = 0; t < scene_.triangles.size(); ++t) {
       if (material(t).has_holes()) continue;
       const auto [low, high] = box_of(t);
+      if (!is_moved_.empty() && (glm::any(glm::greaterThan(Vec3(low), around.high)) ||
+                                 glm::any(glm::lessThan(Vec3(high), around.low)))) {
+        continue;
+      }
       boxes.push_back({low, high, parts_.of[t], t});
     }
-    join_boxes(std::move(boxes),
-               [&](std::uint32_t a, std::uint32_t b) { look_at(std::min(a, b), std::max(a, b)); });
+    join_boxes(std::move(boxes), [&](std::uint32_t a, std::uint32_t b) {
+      if (concerns(a, b)) look_at(std::min(a, b), std::max(a, b));
+    });
     std::sort(scene_.coincident.begin(), scene_.coincident.end(),
               [](const FacePair& p, const FacePair& q) {
                 return std::tie(p.a, p.b) < std::tie(q.a, q.b);
@@ -137,6 +150,10 @@ class Coincidence {
   [[nodiscard]] Rank rank(std::uint32_t t) const {
     const bool open = material(t).two_sided || kind(t) == FaceParts::Kind::Open;
     return {material(t).emits(), open ? 2 : kind(t) == FaceParts::Kind::Room ? 1 : 0, t};
+  }
+
+  [[nodiscard]] bool concerns(std::uint32_t a, std::uint32_t b) const {
+    return is_moved_.empty() || is_moved_[object(a)] || is_moved_[object(b)];
   }
 
   void look_at(std::uint32_t a, std::uint32_t b) {
@@ -270,6 +287,7 @@ class Coincidence {
   const FaceParts& parts_;
   SurfaceOffsets offsets_;
   Vec3 centre_;  // origin of single-precision coordinates
+  std::vector<bool> is_moved_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, Gap> gaps_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, Decided> decided_;  // objects: below, above
   std::vector<std::pair<glm::vec3, glm::vec3>> part_boxes_;
@@ -296,10 +314,13 @@ void find_coincident_faces(Scene& scene, const FaceParts& parts) {
   Coincidence(scene, parts).find();
 }
 
-void find_coincident_faces_again(Scene& scene) {
+void find_coincident_faces_again(Scene& scene, const std::vector<bool>& is_moved) {
+  if (scene.triangles.empty() || std::ranges::find(is_moved, true) == is_moved.end()) return;
   std::vector<std::string> said = scene.warnings;
-  scene.coincident.clear();
-  find_coincident_faces(scene, *scene.face_parts);
+  std::erase_if(scene.coincident, [&](const FacePair& pair) {
+    return is_moved[scene.triangles[pair.a].object] || is_moved[scene.triangles[pair.b].object];
+  });
+  Coincidence(scene, *scene.face_parts).find(is_moved);
   scene.warnings = std::move(said);
 }
 

@@ -36,7 +36,8 @@ void add_instances(FaceParts& parts, const Scene& scene);
 // that are narrower than twenty ray offsets, if the offsets exceed 10 um.
 void find_coincident_faces(Scene& scene, const FaceParts& parts);
 
-// Again, after objects have moved; without warnings. Needs scene.face_parts.
-void find_coincident_faces_again(Scene& scene);
+// Again, after objects have moved; without warnings. Needs scene.face_parts. is_moved: of each
+// object; pairs of two others stay.
+void find_coincident_faces_again(Scene& scene, const std::vector<bool>& is_moved);
 
 }  // namespace earthshine::scenes

@@ -254,6 +254,7 @@ Camera read_camera(const TomlNode& node, double unit_m, const JointPoses& joints
                "up, [0, 0, 1] unless given, is a direction across the view",
                "Give another up = [x, y, z]");
   }
+  camera.joint = table.text("joint").value_or("");
   const Pose pose = joints.of(table);
   camera.position = pose.point(camera.position);
   camera.look_at = pose.point(camera.look_at);

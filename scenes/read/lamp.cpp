@@ -265,6 +265,7 @@ Lamp read_lamp(const TomlNode& node, double unit_m, const JointPoses& joints,
   table.allow_only(allowed, fmt::format("a light of type \"{}\"", type));
   lamp.motion = read_motion(table);
   reader.read(lamp, table, unit_m, shelf);
+  lamp.joint = table.text("joint").value_or("");
   const Pose pose = joints.of(table);
   lamp.position = pose.point(lamp.position);
   for (Vec3* direction : {&lamp.axis, &lamp.edge_u, &lamp.edge_v, &lamp.c0}) {
@@ -287,6 +288,7 @@ void add_file_lamps(Scene& scene, const std::string& object, const Mesh& mesh, s
     lamp.name = lamp.group = new_name(scene.lamps, object, lamp.name, "lamp");
     if (!lamp.is_distant()) lamp.position = placed(placement, lamp.position, where);
     lamp.axis = placement.turned(lamp.axis);
+    lamp.object = object;
     scene.lamps.push_back(std::move(lamp));
   }
 }
@@ -302,6 +304,7 @@ void add_file_cameras(Scene& scene, const std::string& object, const Mesh& mesh,
     camera.look_at = camera.position + placement.unit_m * along;
     camera.up = placement.turned(camera.up);
     camera.where = where;
+    camera.object = object;
     scene.cameras.push_back(std::move(camera));
   }
 }

@@ -15,7 +15,6 @@
 #include "scenes/surface_texture.h"
 #include "scenes/text/toml_file.h"
 #include "scenes/triangle_point.h"
-#include "scenes/view/motion.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -132,7 +131,7 @@ Scene scene_of(TomlNode tree, const std::filesystem::path& path,
   const TableReader root(tree, "the scene", root_keys);
   check_format(root);
   scene.name = root.text("name").value_or(path.stem().string());
-  const double unit_m = read_unit(root);
+  const double unit_m = scene.unit_m = read_unit(root);
 
   read_named(root, "material", [&](const TomlNode& node) {
     return scene.materials.emplace_back(read_material(node)).name;
@@ -191,9 +190,7 @@ Scene scene_of(TomlNode tree, const std::filesystem::path& path,
   lift_lamps(scene);
   add_instances(parts, scene);
   find_coincident_faces(scene, parts);
-  if (surfaces_or_lamps_move(scene)) {
-    scene.face_parts = std::make_shared<const FaceParts>(std::move(parts));
-  }
+  scene.face_parts = std::make_shared<const FaceParts>(std::move(parts));
   name_small_objects(scene);
   return scene;
 }
