@@ -30,24 +30,6 @@ Vec3 direction(const RayPacket& packet, std::size_t k) {
 
 }  // namespace
 
-HitTargets::HitTargets(const Patches& patches, const std::vector<bool>& passes_on)
-    : patches_(patches), targets_(patches.of_triangle.size()) {
-  for (std::size_t k = 0; k < targets_.size(); ++k) {
-    const Facet& facet = patches.facets[patches.of_triangle[k]];
-    Target& target = targets_[k];
-    target.s_count = facet.s_count;
-    target.t_count = facet.t_count;
-    target.first_front = facet.first_front;
-    target.first_back = facet.first_back;
-    target.tree = facet.tree;
-    target.passes_on = passes_on[facet.material] ? 1 : 0;
-    target.kind =
-        static_cast<std::uint8_t>(facet.is_cluster()    ? cluster_kind
-                                  : facet.parallelogram ? triangle_kinds + patches.second_half[k]
-                                                        : facet.apex);
-  }
-}
-
 RowCaster::RowCaster(const scenes::Scene& scene, const scenes::RayQuery& query,
                      const Patches& patches, const std::vector<double>& kept,
                      const FormFactorOptions& options, std::uint32_t rays,
@@ -123,7 +105,7 @@ void RowCaster::keep(std::uint32_t patch, const Row& row, const Band& band) cons
 
 bool RowCaster::restore(std::uint32_t patch, const PatchRays::Sender& first, Band& band) const {
   const KeptRow& kept = kept_rows_->rows[patch];
-  if (kept_rows_->moved == nullptr || kept_rows_->unmoved[patch] == 0 || !kept.is_plain) {
+  if (kept_rows_->moved == nullptr || !kept_rows_->moved->is_unmoved(patch) || !kept.is_plain) {
     return false;
   }
   const std::size_t first_part = band.sky_illuminance.size();
