@@ -297,8 +297,8 @@ base::Image LiveScene::at_once(const RenderCall& call, const scenes::Camera& cam
     return raytrace::preview(scene_.loaded.world(*scene_.query), light_->solution,
                              raytrace::make_camera_model(camera, size.columns, size.rows));
   }
-  // Other light: the samples of a small picture. They add what the solution lacks, and the solution
-  // before the move is nearer than none if its patches are still there.
+  // Other light: the samples of a small picture. They add the residual of the
+  // solution. An older solution is a better start than none if its patches are unchanged.
   const bool same_patches = light_ && light_structures_ == scene_.structures &&
                             light_->solution.columns == 3 * scene_.loaded.groups.count();
   Solved none;

@@ -161,7 +161,7 @@ class DataSet {
       return fs::file_size(file, missing) > 0 && !missing;
     });
   }
-  // Targets that move stand in the axes of their models.
+  // Targets that move are placed in the axes of their models.
   [[nodiscard]] std::vector<std::string> model_overrides() const {
     std::vector<std::string> overrides = recipe_.overrides;
     for (const DrawnTarget& target : recipe_.targets) {

@@ -48,8 +48,8 @@ void reflect(const Facets& facets, Material& material) {
   const double kept = std::clamp(peak / least_highlight - 1.0, 0.0, 1.0);
   material.diffuse =
       facets.base * (plain * (1.0 - taken * kept * in_lobe) + facets.metallic * lobe.diffuse);
-  // Diffuse part of rough facets, for dark materials without diffuse light of their own. For
-  // dielectrics (0.04) it is negligible.
+  // Diffuse part of rough facets, for dark materials without a diffuse part. It is negligible for
+  // dielectrics (0.04).
   constexpr double next_to_nothing = 0.04;
   const double counts = std::clamp(taken / next_to_nothing - 1.0, 0.0, 1.0);
   const Rgb in_diffuse = facets.base * (plain * taken * (1.0 - kept * in_lobe));
