@@ -254,8 +254,8 @@ std::vector<std::string> limits_of_balance(const radiosity::Solution& solution, 
                     balance.held, balance.balanced ? where : ""));
   }
   // A smaller defect is invisible in results, however accurate the rest.
-  constexpr double tells = 1e-6;
-  if (balance.balanced || balance.sweeps == 0 || balance.after <= std::max(tells, enough)) {
+  constexpr double least_defect = 1e-6;
+  if (balance.balanced || balance.sweeps == 0 || balance.after <= std::max(least_defect, enough)) {
     return limits;
   }
   limits.push_back(

@@ -138,14 +138,14 @@ std::uint64_t resident_bytes() {
   return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-// Free memory by look(). First returns the allocator's unused memory, which is at most the resident
+// Free memory by measure(). First returns the allocator's unused memory, which is at most the resident
 // memory; not if the resident memory is an eighth of the free memory or less.
-template <class Look>
-Bytes left_for_use(const Look& look) {
-  const Bytes left = look();
+template <class Measure>
+Bytes left_for_use(const Measure& measure) {
+  const Bytes left = measure();
   if (!left || resident_bytes() <= *left / 8) return left;
   give_back();
-  return look();
+  return measure();
 }
 
 }  // namespace

@@ -97,7 +97,7 @@ std::string nearest_word(std::string_view word, std::span<const std::string> can
   const auto has = [&](std::string_view one) {
     return first([&](const std::string& candidate) { return has_word(bare(candidate), one); });
   };
-  // A word of the table is meant as it is: spelling would mislead.
+  // A word of the table is no misspelling.
   const std::vector<std::string>* const alike = meaning_of(wrong);
   if (alike != nullptr) {
     for (const std::string& one : *alike) {

@@ -73,9 +73,7 @@ std::shared_ptr<Monitor> degrade_frame(const Frame& frame, const std::string& re
                                        const Monitor* before) {
   const Request request(request_text);
   const Turn turn(request);
-  app::Common common;
-  common.quiet = true;
-  common.seed = request.seed();
+  const app::Common common = request.common();
   app::CctvSetup setup = camera_of(frame, request, common);
   degrade::Options& options = setup.chain.options;
   options.seed = common.seed;
@@ -114,9 +112,7 @@ void write_monitor(const Monitor& monitor, const std::string& path) {
 std::string run_study(const std::string& request_text) {
   const Request request(request_text);
   const Turn turn(request);
-  app::Common common;
-  common.quiet = true;
-  common.seed = request.seed();
+  const app::Common common = request.common();
   const std::string path = request.word("path", ""), kind = request.word("kind", "run");
   app::StudyTask task;
   if (kind == "run") {

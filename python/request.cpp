@@ -56,11 +56,15 @@ std::optional<std::vector<int>> Request::whole_numbers(const char* key, std::siz
   return list.get<std::vector<int>>();
 }
 
-std::uint64_t Request::seed() const {
-  if (!has("seed")) return 1;
+app::Common Request::common() const {
+  app::Common common;
+  common.quiet = true;
+  common.seed = 1;
+  if (!has("seed")) return common;
   const app::Json& seed = json_["seed"];
   if (!seed.is_number_unsigned()) refuse("seed", seed, "allowed is a whole number of 0 and more");
-  return seed.get<std::uint64_t>();
+  common.seed = seed.get<std::uint64_t>();
+  return common;
 }
 
 int Request::threads() const {

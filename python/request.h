@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/command.h"
 #include "app/json.h"
 #include "base/parallel.h"
 
@@ -28,7 +29,8 @@ class Request {
   // Throws base::Error (Input) unless there are `count` integers of at least `least`.
   [[nodiscard]] std::optional<std::vector<int>> whole_numbers(const char* key, std::size_t count,
                                                               int least = 0) const;
-  [[nodiscard]] std::uint64_t seed() const;
+  // Quiet, with the seed.
+  [[nodiscard]] app::Common common() const;
   [[nodiscard]] int threads() const;
 
  private:

@@ -89,13 +89,6 @@ app::RenderCall call_of(const Request& request, const std::string& path,
   return call;
 }
 
-app::Common common_of(const Request& request) {
-  app::Common common;
-  common.seed = request.seed();
-  common.quiet = true;
-  return common;
-}
-
 Json json_of(const scenes::Camera& camera) {
   const raytrace::CameraMatrices matrices =
       raytrace::camera_matrices(raytrace::make_camera_model(camera, camera.columns, camera.rows));
@@ -226,7 +219,7 @@ std::shared_ptr<Frame> Session::render(const std::string& request_text,
   times.measure("read", [&] { s.read(); });
   app::RenderCall call = call_of(request, s.path, s.overrides);
   if (light) call.solution = "solution";  // as if read from a file
-  const app::Common common = common_of(request);
+  const app::Common common = request.common();
   const auto cameras = app::wanted_cameras(call.cameras, s.loaded.scene);
   const scenes::Camera& camera = *cameras.front();
   s.prepare(call, cameras, true, request.number("error"));
@@ -283,7 +276,7 @@ std::shared_ptr<Light> Session::solve(const std::string& request_text) {
   times.measure("read", [&] { s.read(); });
   app::RenderCall call;
   call.all_effects = true;  // as in `solve`, which has no camera
-  const app::Common common = common_of(request);
+  const app::Common common = request.common();
   s.prepare(call, {}, false, request.number("error"));
   const base::StopInForce stop([] { return app::Interrupt::asked(); });
   app::Solved solved = app::solve_alone(
@@ -334,7 +327,7 @@ std::string Session::plan(const std::string& request_text) {
   }
   s.prepare(call, cameras, false, request.number("error"));
   const base::StopInForce stop([] { return app::Interrupt::asked(); });
-  const Json plan = app::plan_json(s.loaded, call, common_of(request),
+  const Json plan = app::plan_json(s.loaded, call, request.common(),
                                    static_cast<int>(request.number("ranks").value_or(0.0)));
   leave_if_asked();
   return app::dump(plan);
@@ -351,7 +344,7 @@ std::string Session::form_factors(const std::string& request_text) {
   const base::StopInForce stop([] { return app::Interrupt::asked(); });
   const Json found =
       app::form_factors_json(s.loaded, app::factor_method("method", request.word("method", "auto")),
-                             request.flag("raw"), common_of(request));
+                             request.flag("raw"), request.common());
   return app::dump(found);
 }
 

@@ -165,13 +165,12 @@ std::unique_ptr<const MovedParts> begin_pose(const scenes::World& world, const P
                                                      same ? earlier.get() : nullptr);
   std::unique_ptr<const MovedParts> moved;
   if (same) {
-    moved = std::make_unique<const MovedParts>(kept.vertices, *earlier, scene, *kept.bodies);
     double offset_m = 0.0;
     for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
       offset_m = std::max(offset_m, world.query.offset_m(t));
     }
-    kept.rows.unmoved = moved->unmoved(patches, 2.0 * offset_m);
-    kept.samples.unmoved = kept.rows.unmoved;
+    moved = std::make_unique<const MovedParts>(kept.vertices, *earlier, scene, *kept.bodies,
+                                               patches, 2.0 * offset_m);
   } else {
     kept.rows.rows.assign(patches.count(), {});
     kept.samples.of_source.clear();

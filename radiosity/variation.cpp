@@ -23,9 +23,9 @@ constexpr std::size_t indirect_points = 4;                    // one per quarter
 constexpr std::size_t wide_source_points = 4;  // per point and set; 1 for the Sun and small lamps
 
 // Sums per point, set and group.
-class Looks {
+class PointSums {
  public:
-  Looks(std::size_t points, std::size_t groups)
+  PointSums(std::size_t points, std::size_t groups)
       : groups_(groups), where_(points), sum_(points * 2 * groups, 0.0) {}
 
   // Sets the point's position in the patch: x along s, y along t, from 0 to 1.
@@ -114,7 +114,7 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
     const double wanted = fewest_points + area_m2 / (options_.spacing_m * options_.spacing_m);
     return std::bit_floor(static_cast<std::size_t>(std::min(wanted, most_points)));
   };
-  const auto direct = [&](std::uint32_t patch, const Rgb& rho, Looks& looks) {
+  const auto direct = [&](std::uint32_t patch, const Rgb& rho, PointSums& sums) {
     const base::Key key(options_.seed, base::Stream::Refinement, identity(patches, patch));
     const base::SobolOwen4 where(key);
     struct Arriving {
@@ -123,13 +123,13 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
     };
     scenes::ShadowQueue<Arriving> shadows(world_.query);
     const auto take = [&](const Arriving& to, const Rgb& share) {
-      looks.at(to.point, to.set, to.group) += base::luminance(to.value * share);
+      sums.at(to.point, to.set, to.group) += base::luminance(to.value * share);
     };
     std::vector<scenes::LightSample> taken;
-    for (std::size_t point = 0; point < looks.points(); ++point) {
+    for (std::size_t point = 0; point < sums.points(); ++point) {
       const auto p = where.point2(static_cast<std::uint32_t>(point));
       const SurfacePoint from = patches.at(patch, p[0], p[1]);
-      looks.place(point, p[0], p[1]);
+      sums.place(point, p[0], p[1]);
       for (std::size_t k = 0; k < sources_.size(); ++k) {
         const Source& source = sources_[k].source;
         const std::size_t samples = source.points > 16 ? wide_source_points : 1;
@@ -155,7 +155,7 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
     shadows.trace(take);
     return shadows.rays();
   };
-  const auto indirect = [&](std::uint32_t patch, double rho, Looks& looks) {
+  const auto indirect = [&](std::uint32_t patch, double rho, PointSums& sums) {
     const base::Key key(options_.seed, base::Stream::Refinement, identity(patches, patch));
     RayPacket packet;
     scenes::HitPacket hits;
@@ -175,7 +175,7 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
           const base::Frame3 frame = base::frame_around(from.normal);
           const Vec3 origin = lifted(from, world_.query);
           std::array<Vec3, RayPacket::width> directions;
-          looks.place(point, x, y);
+          sums.place(point, x, y);
           for (std::size_t k = 0; k < RayPacket::width; ++k) {
             directions[k] = frame.to_world(local[k]);
             world_.query.set(packet, k, origin, directions[k]);
@@ -187,7 +187,7 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
               const Rgb sky = scenes::earth_radiance(world_.scene, directions[k]);
               const std::size_t group =
                   earth_group_ + scenes::earth_part(world_.scene, directions[k]);
-              looks.at(point, set, group) +=
+              sums.at(point, set, group) +=
                   weight * light.scale[group] * base::pi * base::luminance(sky);
               continue;
             }
@@ -195,7 +195,7 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
                                                          double(hits.v[k]), hits.front[k] != 0);
             if (to == no_patch) continue;
             for (std::size_t g = 0; g < groups_; ++g) {
-              looks.at(point, set, g) += weight * double(light.brightness[to * groups_ + g]);
+              sums.at(point, set, g) += weight * double(light.brightness[to * groups_ + g]);
             }
           }
         }
@@ -203,12 +203,13 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
     }
     return std::uint64_t{2 * indirect_points * gather_directions};
   };
-  const auto look = [&](std::size_t begin, std::size_t end) {
+  const auto sample = [&](std::size_t begin, std::size_t end) {
     std::uint64_t& rays = rays_of[begin / chunk];
     for (std::size_t k = begin; k < end; ++k) {
       const Rgb rho = reflectances_.of(patches, which[k]);
       if (base::max_component(rho) <= 0.0) continue;
-      Looks sharp(points_on(patches.area_m2[which[k]]), groups_), soft(indirect_points, groups_);
+      PointSums sharp(points_on(patches.area_m2[which[k]]), groups_),
+          soft(indirect_points, groups_);
       rays += direct(which[k], rho, sharp);
       rays += indirect(which[k], base::luminance(rho), soft);
       const double weight = patches.area_m2[which[k]] / (light.area_m2 * lit_groups);
@@ -220,7 +221,7 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
       sum = {weight * sum.error, weight * sum.along_s, weight * sum.along_t};
     }
   };
-  base::share_chunks(which.size(), chunk, look,
+  base::share_chunks(which.size(), chunk, sample,
                      [&](std::size_t begin, std::size_t end, base::Parcel& parcel) {
                        parcel.pass_range(&found[begin], end - begin);
                        parcel.pass(rays_of[begin / chunk]);

@@ -78,15 +78,6 @@ constexpr auto lane_masks() {
 }
 alignas(32) constexpr std::array<std::array<int, 8>, 9> valid_lanes = lane_masks();
 
-// Bit k is set if ray k met anything.
-std::uint32_t hidden_bits(const RTCRay8& rays, std::size_t count) {
-  std::uint32_t bits = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    if (rays.tfar[k] < 0.0F) bits |= 1U << k;
-  }
-  return bits;
-}
-
 // Factor on the distance of the farthest surface: rays from beyond start at the scene's bounds.
 constexpr double far_extents = 2.0;
 // Share of a point's distance from the centre: a few roundings of its coordinates.
@@ -104,6 +95,17 @@ Vec3 inside(const Corners& p, const Barycentric& at) {
 constexpr double least_fall = 1e-6;
 
 }  // namespace
+
+// Casts shadow rays. Bit k is set if ray k met anything.
+std::uint32_t RayQuery::Embree::hidden_bits(RTCRay8& rays, std::size_t count,
+                                            ShadowContext& context) const {
+  cast_into_each([&](RTCScene each) { occluded8(valid_lanes[count].data(), each, rays, context); });
+  std::uint32_t bits = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (rays.tfar[k] < 0.0F) bits |= 1U << k;
+  }
+  return bits;
+}
 
 RayQuery::RayQuery(const Scene& source, const std::optional<Vec3>& about)
     : embree_(std::make_unique<Embree>()),
@@ -186,10 +188,8 @@ void RayQuery::closest(const RayPacket& rays, std::size_t count, HitPacket& hits
   fill(rays, query.ray);
   for (unsigned& id : query.hit.geomID) id = RTC_INVALID_GEOMETRY_ID;
   for (unsigned& id : query.hit.instID[0]) id = RTC_INVALID_GEOMETRY_ID;
-  intersect8(valid_lanes[count].data(), embree_->scene, query);
-  if (embree_->movers != nullptr) {
-    intersect8(valid_lanes[count].data(), embree_->movers, query);
-  }
+  embree_->cast_into_each(
+      [&](RTCScene scene) { intersect8(valid_lanes[count].data(), scene, query); });
   for (std::size_t k = 0; k < RayPacket::width; ++k) {
     const bool hit = query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
     const unsigned instance = query.hit.instID[0][k];
@@ -230,8 +230,7 @@ Hit RayQuery::closest(const Vec3& origin, const Vec3& direction) const {
   query.ray.mask = all_rays;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  intersect1(embree_->scene, query);
-  if (embree_->movers != nullptr) intersect1(embree_->movers, query);
+  embree_->cast_into_each([&](RTCScene scene) { intersect1(scene, query); });
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
   const unsigned instance = query.hit.instID[0];
   const bool front =
@@ -247,11 +246,7 @@ std::uint32_t RayQuery::occluded(const RayPacket& rays, std::size_t count) const
   RTCRay8 query;
   fill(rays, query);
   ShadowContext context;
-  occluded8(valid_lanes[count].data(), embree_->scene, query, context);
-  if (embree_->movers != nullptr) {
-    occluded8(valid_lanes[count].data(), embree_->movers, query, context);
-  }
-  return hidden_bits(query, count);
+  return embree_->hidden_bits(query, count, context);
 }
 
 Vec3 hit_position(const Scene& scene, const Hit& hit) {
@@ -293,11 +288,7 @@ void RayQuery::light_shares(const RayPacket& rays, const std::uint32_t* mirrors,
         (mirror.height_m(origin[k]) - 2.0 * mirror.offset_m) / std::max(fall, 1e-12);
     query.tfar[k] = std::min(query.tfar[k], static_cast<float>(std::max(0.0, to_mirror)));
   }
-  occluded8(valid_lanes[count].data(), embree_->scene, query, context);
-  if (embree_->movers != nullptr) {
-    occluded8(valid_lanes[count].data(), embree_->movers, query, context);
-  }
-  const std::uint32_t hidden = hidden_bits(query, count);
+  const std::uint32_t hidden = embree_->hidden_bits(query, count, context);
   for (std::size_t k = 0; k < count; ++k) {
     const bool turns = context.specular_paths != nullptr && mirrors[k] != no_mirror;
     if (((hidden >> k) & 1U) != 0) {

@@ -58,6 +58,16 @@ struct RayQuery::Embree {
     if (device != nullptr) rtcReleaseDevice(device);
   }
 
+  // Calls cast(scene) for each structure. Embree keeps the nearer hit of both.
+  template <class Cast>
+  void cast_into_each(Cast cast) const {
+    cast(scene);
+    if (movers != nullptr) cast(movers);
+  }
+
+  [[nodiscard]] std::uint32_t hidden_bits(RTCRay8& rays, std::size_t count,
+                                          ShadowContext& context) const;
+
   [[nodiscard]] std::uint32_t triangle(unsigned instance, unsigned primitive) const {
     return instance == RTC_INVALID_GEOMETRY_ID ? primitive
                                                : placed[instance].first_triangle + primitive;

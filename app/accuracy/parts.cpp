@@ -211,8 +211,8 @@ double AccuracyParts::wall_per_cpu() const {
   return std::max(1e-3, seconds()) / std::max(1e-3, base::cpu_seconds() - cpu_start_);
 }
 
-void AccuracyParts::tell(const std::string& what, double seconds_left,
-                         const std::string& found) const {
+void AccuracyParts::note_progress(const std::string& what, double seconds_left,
+                                  const std::string& found) const {
   if (task_.common.quiet) return;
   std::string line = what;
   if (!found.empty()) line += ": " + found;

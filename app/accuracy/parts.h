@@ -39,7 +39,7 @@ class AccuracyParts {
   [[nodiscard]] double seconds() const;  // wall time since the start
   // Present ratio of wall to CPU seconds, to predict the remaining time.
   [[nodiscard]] double wall_per_cpu() const;
-  void tell(const std::string& what, double seconds_left, const std::string& found) const;
+  void note_progress(const std::string& what, double seconds_left, const std::string& found) const;
 
  private:
   [[nodiscard]] Json cache_key_of(const studies::Batch& batch) const;

@@ -12,14 +12,14 @@ namespace earthshine::app {
 namespace {
 
 // Style of a series: the colour shows the method, the marker the parameter that varies.
-struct Look {
+struct SeriesStyle {
   const char* method;
   const char* series;
   const char* title;
   const char* colour;
   int mark;
 };
-constexpr Look looks[] = {
+constexpr SeriesStyle styles[] = {
     {"radiosity", "error", "radiosity, all together", "#1f4e9c", 7},
     {"radiosity", "max_patches", "patches alone", "#3b8bd6", 4},
     {"radiosity", "form_factor_rays", "form-factor rays alone", "#3b8bd6", 6},
@@ -30,8 +30,8 @@ constexpr Look looks[] = {
     {"paths", "samples", "paths", "#2c8a3a", 13},
 };
 
-std::string style_of(const Look& look) {
-  return fmt::format("with linespoints lw 1.5 pt {} ps 0.8 lc rgb '{}'", look.mark, look.colour);
+std::string style_of(const SeriesStyle& style) {
+  return fmt::format("with linespoints lw 1.5 pt {} ps 0.8 lc rgb '{}'", style.mark, style.colour);
 }
 
 // In per cent; insignificant errors are drawn at the reference's resolution.
@@ -51,10 +51,10 @@ PlotPanel error_panel(const AccuracyResult& result, const std::string& title,
         point_at(abscissa(result.points[k]), result.points[k].error, result.resolution));
   }
   panel.curves.push_back(front);
-  for (const Look& look : looks) {
-    PlotCurve curve{look.title, style_of(look), {}, true};
+  for (const SeriesStyle& style : styles) {
+    PlotCurve curve{style.title, style_of(style), {}, true};
     for (const studies::MeasuredStep& point : result.points) {
-      if (point.step.method != look.method || point.step.series != look.series) continue;
+      if (point.step.method != style.method || point.step.series != style.series) continue;
       const double x = abscissa(point);
       if (x > 0.0) curve.points.push_back(point_at(x, point.error, result.resolution));
     }
@@ -79,8 +79,9 @@ PlotCurve law_curve(const studies::SeriesLaw& law) {
   return curve;
 }
 
-PlotPanel law_panel(const AccuracyResult& result, const studies::SeriesLaw& law, const Look& look) {
-  PlotPanel panel{look.title, law.spent, "error of the setting, %", {}, false};
+PlotPanel law_panel(const AccuracyResult& result, const studies::SeriesLaw& law,
+                    const SeriesStyle& style) {
+  PlotPanel panel{style.title, law.spent, "error of the setting, %", {}, false};
   if (law.law) {
     panel.title += fmt::format(": x^{:.2f}", -law.law->exponent);
     if (law.law->exponent_error) panel.title += fmt::format(" ± {:.2f}", *law.law->exponent_error);
@@ -88,7 +89,7 @@ PlotPanel law_panel(const AccuracyResult& result, const studies::SeriesLaw& law,
     panel.curves.push_back(law_curve(law));
   }
   PlotCurve curve{
-      "", fmt::format("with points pt {} ps 1 lc rgb '{}'", look.mark, look.colour), {}, true};
+      "", fmt::format("with points pt {} ps 1 lc rgb '{}'", style.mark, style.colour), {}, true};
   for (const studies::MeasuredStep& point : result.points) {
     if (point.step.method != law.method || point.step.series != law.series) continue;
     const double x = studies::spent_on(point).amount;
@@ -114,10 +115,10 @@ std::vector<AccuracyPlot> accuracy_plots(const AccuracyTask& task, const Accurac
   seconds.panels.back().legend = false;
   seconds.panels.back().curves.erase(seconds.panels.back().curves.begin());
   AccuracyPlot settings{accuracy_plot_stems[1], {}, 3};
-  for (const Look& look : looks) {
+  for (const SeriesStyle& style : styles) {
     for (const studies::SeriesLaw& law : result.findings.laws) {
-      if (law.method == look.method && law.series == look.series && law.method != "direct") {
-        settings.panels.push_back(law_panel(result, law, look));
+      if (law.method == style.method && law.series == style.series && law.method != "direct") {
+        settings.panels.push_back(law_panel(result, law, style));
       }
     }
   }

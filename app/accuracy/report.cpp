@@ -84,7 +84,7 @@ Json law_json(const studies::SeriesLaw& law) {
 Json answer_json(const AccuracyTask& task, const AccuracyResult& result,
                  const studies::Answer& answer) {
   const auto point_json = [&](const std::optional<std::size_t>& index) -> Json {
-    if (!index || !answer.told) return nullptr;
+    if (!index || !answer.is_resolved) return nullptr;
     const studies::MeasuredStep& point = result.points[*index];
     return {{"method", point.step.method},
             {"error", point.error.error},
@@ -96,15 +96,15 @@ Json answer_json(const AccuracyTask& task, const AccuracyResult& result,
   };
   Json methods = Json::object();
   for (const studies::Answer::OfMethod& method : answer.methods) {
-    Json json = {{"reached", answer.told && method.point.has_value()},
+    Json json = {{"reached", answer.is_resolved && method.point.has_value()},
                  {"setting", point_json(method.point)},
                  {"setting_apart_from_limit", point_json(method.setting)}};
     if (method.expected_seconds) json["expected_cpu_seconds"] = *method.expected_seconds;
     methods[method.method] = json;
   }
   return {{"wanted", answer.wanted},
-          {"reference_fine_enough", answer.told},
-          {"reached", answer.told && answer.best.has_value()},
+          {"reference_fine_enough", answer.is_resolved},
+          {"reached", answer.is_resolved && answer.best.has_value()},
           {"setting", point_json(answer.best)},
           {"methods", methods}};
 }
@@ -127,8 +127,8 @@ std::string point_text(const AccuracyTask& task, const studies::MeasuredStep& po
 std::string answer_text(const AccuracyTask& task, const AccuracyResult& result,
                         const studies::Answer& answer) {
   std::string text = fmt::format("{:>6}: ", percent(answer.wanted));
-  if (!answer.told) {
-    return text + fmt::format("the reference tells errors from {} on only; give it more time\n",
+  if (!answer.is_resolved) {
+    return text + fmt::format("the reference resolves errors from {} on only; give it more time\n",
                               percent(result.resolution));
   }
   if (answer.best) return text + point_text(task, result.points[*answer.best]);

@@ -75,8 +75,8 @@ class Study : AccuracyStages {
       // About as long as the references take the settings that are measured by them.
       task_.common.progress->expect_rest(
           in_time(rest + reference_share * (parts_.seconds() + rest)));
-      parts_.tell(fmt::format("reference, {} of {} rounds", k + 2, further.size() + 1),
-                  in_time(rest), "");
+      parts_.note_progress(fmt::format("reference, {} of {} rounds", k + 2, further.size() + 1),
+                           in_time(rest), "");
       trace_round(references, static_cast<int>(k) + 1, further[k]);
     }
     take_truth(references.front());
@@ -154,9 +154,10 @@ class Study : AccuracyStages {
         }
       }
       task_.common.progress->expect_rest(in_time(left));
-      parts_.tell(fmt::format("{} of {}: {}", k + 1, ladder.size(), step.name()), in_time(left),
-                  fmt::format("{} in {}", scenes::percent(result_.points.back().error.error),
-                              duration(cost.wall_seconds)));
+      parts_.note_progress(
+          fmt::format("{} of {}: {}", k + 1, ladder.size(), step.name()), in_time(left),
+          fmt::format("{} in {}", scenes::percent(result_.points.back().error.error),
+                      duration(cost.wall_seconds)));
     }
   }
 

@@ -47,7 +47,7 @@ void write_layers(const ConsoleCall& call, const StudyPart& part, const ConsoleV
       view.image, header);
 }
 
-// What the page shows: a study made for it, or a finished one.
+// Study of the page: made for it, or finished.
 struct Source {
   studies::StudyFile study;
   std::optional<FinishedStudy> finished;
@@ -86,7 +86,7 @@ std::unique_ptr<StudyPart> part_of(const Source& source, const Common& common) {
   return std::move(first);
 }
 
-// Options that decide what a page has do not go with a server, which writes none.
+// Options for the contents of a page are errors with a server, which writes no page.
 void serve_scene(const ConsoleCall& call, const CLI::App& parser, const Common& common) {
   for (const char* option :
        {"--output", "--camera", "--size", "--positions", "--layers", "--json"}) {

@@ -72,7 +72,7 @@ std::string unit_of(const ViewLayer& layer) {
   return "cd/m²";
 }
 
-// A list of names in the header, such as those that the numbers of the layer "object" stand for.
+// A list of names in the header, such as the objects that the layer "object" numbers.
 Json names_for(const ViewLayer& layer, const base::ExrHeader& header) {
   for (const auto& [key, text] : header.text) {
     if (key != "earthshine:" + layer.name + "s") continue;

@@ -162,7 +162,7 @@ class DataSet {
       return fs::file_size(file, missing) > 0 && !missing;
     });
   }
-  // Targets that move stand in the axes of their models.
+  // Targets that move are placed in the axes of their models.
   [[nodiscard]] std::vector<std::string> model_overrides() const {
     std::vector<std::string> overrides = recipe_.overrides;
     for (const DrawnTarget& target : recipe_.targets) {
@@ -187,6 +187,10 @@ class DataSet {
                                                          const Draw& draw) const;
   void write_models(const scenes::Scene& scene) const;
   void place_camera(scenes::Scene& scene, const scenes::RayQuery& query, std::size_t image) const;
+  // Writes the masks of an image's targets.
+  [[nodiscard]] std::vector<Masks> write_masks(const std::vector<studies::TargetView>& views,
+                                               const studies::ObjectMap& map,
+                                               std::size_t image) const;
   void write_picture(const base::Image& picture, const Draw& draw,
                      const std::optional<CctvSetup>& cctv, std::size_t image) const;
 
@@ -312,6 +316,18 @@ void DataSet::write_picture(const base::Image& picture, const Draw& draw,
   base::write_png(rgb, picture.width, picture.height, 3, tone.rgb);
 }
 
+std::vector<Masks> DataSet::write_masks(const std::vector<studies::TargetView>& views,
+                                        const studies::ObjectMap& map, std::size_t image) const {
+  std::vector<Masks> masks;
+  for (std::size_t t = 0; t < views.size(); ++t) {
+    masks.push_back(masks_of(views[t], map));
+    base::write_png(folder_.mask("mask", image, t), map.columns, map.rows, 1, masks[t].whole);
+    base::write_png(folder_.mask("mask_visib", image, t), map.columns, map.rows, 1,
+                    masks[t].visible);
+  }
+  return masks;
+}
+
 bool DataSet::make(std::size_t image) {
   const Draw draw = draw_values(recipe_, image);
   Common common = common_;
@@ -342,13 +358,7 @@ bool DataSet::make(std::size_t image) {
   for (const std::uint32_t object : targets_in(loaded.scene)) {
     views.push_back(*std::ranges::find(all, object, &studies::TargetView::object));
   }
-  std::vector<Masks> masks;
-  for (std::size_t t = 0; t < views.size(); ++t) {
-    masks.push_back(masks_of(views[t], map));
-    base::write_png(folder_.mask("mask", image, t), map.columns, map.rows, 1, masks[t].whole);
-    base::write_png(folder_.mask("mask_visib", image, t), map.columns, map.rows, 1,
-                    masks[t].visible);
-  }
+  const std::vector<Masks> masks = write_masks(views, map, image);
   const std::vector<float>& depth_m = picture.find("Z")->values;
   const Depth16 depth = depth16(depth_m);
   base::write_png16(folder_.bop("depth", image), map.columns, map.rows, depth.values);

@@ -24,24 +24,24 @@ bool is_there(const fs::path& file) {
 
 // The first reader stores the digest that all must find.
 void agree_on_digest(const fs::path& file, const std::string& digest) {
-  const fs::path told = file.string() + ".json";
-  if (!is_there(told) && base::write_new_text(told, dump({{"digest", digest}}))) return;
-  const Json json = json_in(told);
+  const fs::path record = file.string() + ".json";
+  if (!is_there(record) && base::write_new_text(record, dump({{"digest", digest}}))) return;
+  const Json json = json_in(record);
   if (json == Json::object({{"digest", digest}})) return;
   throw base::Error(
       base::Blame::Input, file.string(),
       fmt::format("is another solution than the other parts have read (digest {})", digest),
-      fmt::format("{} has their digest", told.string()),
+      fmt::format("{} has their digest", record.string()),
       "Bring theirs back; or remove all of the folder and begin anew");
 }
 
 void wait_for(const fs::path& file, double wait_s, bool quiet) {
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(wait_s);
-  bool told = false;
+  bool is_noted = false;
   while (!is_there(file) && Clock::now() < end && !Interrupt::asked()) {
-    if (!told && !quiet) note(fmt::format("waiting for {}", file.string()));
-    told = true;
+    if (!is_noted && !quiet) note(fmt::format("waiting for {}", file.string()));
+    is_noted = true;
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }
   if (!is_there(file)) end_part_if_interrupted();

@@ -184,6 +184,84 @@ void expect_work(const RenderCall& call, const Common& common, const LoadedScene
   if (call.time_limit_s > 0.0) progress.end_within(call.time_limit_s);
 }
 
+// Leaves out the pictures of cameras inside a body; returns the cameras' names.
+std::vector<std::string> leave_out_hidden(LoadedScene& loaded, const scenes::RayQuery& query,
+                                          std::vector<Wanted>& pictures, bool quiet) {
+  std::vector<std::string> skipped;
+  for (const scenes::Camera* hidden :
+       skip_hidden_cameras(loaded.scene, query, loaded.asked.cameras, quiet)) {
+    skipped.push_back(hidden->name);
+    std::erase_if(pictures, [&](const Wanted& picture) { return picture.camera == hidden; });
+  }
+  return skipped;
+}
+
+// Range pictures, one per picture if the call wants any.
+std::vector<Json> sense_ranges(const LightCall& at, const std::vector<Wanted>& pictures,
+                               StageTimes& times) {
+  std::vector<Json> ranges;
+  using Task = PartCall::Task;
+  const bool writes = at.call.part.task == Task::All || at.call.part.task == Task::Merge;
+  for (std::size_t k = 0; k < pictures.size() && writes && !at.call.range.empty(); ++k) {
+    ranges.push_back(sense_range({at.loaded.scene, at.query, *pictures[k].camera, at.call.size},
+                                 pictures[k].files.range, at.call.scene.overrides, at.common,
+                                 times));
+  }
+  return ranges;
+}
+
+void check_pictures(const LightCall& at, const std::vector<Wanted>& pictures) {
+  for (const Wanted& picture : pictures) {
+    const raytrace::RenderOptions options =
+        picture_options(at.call, at.common, at.loaded, *picture.camera);
+    check_instants(at.call, at.loaded.scene, *picture.camera, options);
+    check_memory(at.loaded, at.query, solve_options(at.loaded.scene, at.common), &options,
+                 at.call.solution.empty());
+  }
+}
+
+struct Taken {
+  std::vector<Picture> pictures;
+  Json reports = Json::array();
+  bool whole = true;  // false: the last picture was interrupted
+};
+
+Taken take_pictures(RenderContext& context, const std::vector<Wanted>& pictures,
+                    const std::vector<Json>& ranges, StageTimes& times) {
+  Taken taken;
+  for (std::size_t k = 0; k < pictures.size() && taken.whole; ++k) {
+    if (context.call.time_limit_s > 0.0) {
+      const double left = context.call.time_limit_s - times.total();
+      context.time_limit_s = std::max(1e-3, left / static_cast<double>(pictures.size() - k));
+    }
+    context.number = k;
+    if (k > 0) context.white_cd_per_m2 = taken.pictures.front().white_cd_per_m2;
+    Picture picture = take_picture(context, *pictures[k].camera, pictures[k].files, times);
+    times.add({{"pictures", picture.report["seconds"]["render"].get<double>()}});
+    taken.whole = picture.whole;
+    if (!ranges.empty()) picture.report["range"] = ranges[k]["range"];
+    taken.reports.push_back(picture.report);
+    taken.pictures.push_back(std::move(picture));
+  }
+  return taken;
+}
+
+// Lines over the photograph alone.
+void write_wires(const LightCall& at, const scenes::Camera& camera) {
+  const auto drawn = lay_over(at.call.over, *at.call.photo, at.loaded.scene, at.query, camera, {});
+  base::write_png(at.call.png, drawn.width, drawn.height, 3, drawn.rgb);
+}
+
+// Throws if the call was interrupted, or ends short of its error or of its cameras.
+void check_end(const RenderCall& call, const scenes::Scene& scene, const Taken& taken,
+               const std::vector<Wanted>& pictures, const std::vector<std::string>& skipped) {
+  if (!taken.whole) end_interrupted(pictures[taken.pictures.size() - 1].files);
+  for (const Picture& picture : taken.pictures) {
+    check_reached(call.scene, picture.limit, scene.quality.error.value_or(0.0));
+  }
+  check_skipped(skipped);
+}
+
 void run(RenderCall call, const Common& common) {
   check_call(call, common.quiet);
   check_part(call, common.quiet);
@@ -198,40 +276,20 @@ void run(RenderCall call, const Common& common) {
   want_usual_error(call, loaded.scene);
   const auto query = times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
   const std::size_t asked = pictures.size();
-  std::vector<std::string> skipped;
-  for (const scenes::Camera* hidden :
-       skip_hidden_cameras(loaded.scene, query, loaded.asked.cameras, common.quiet)) {
-    skipped.push_back(hidden->name);
-    std::erase_if(pictures, [&](const Wanted& picture) { return picture.camera == hidden; });
-  }
+  const std::vector<std::string> skipped = leave_out_hidden(loaded, query, pictures, common.quiet);
   check_input(loaded, query, {loaded.asked.cameras}, common.quiet);
   if (call.over.asked()) {
-    const scenes::Camera& camera = *pictures.front().camera;
-    call.photo = read_photo(call.over, camera, common.quiet);
+    call.photo = read_photo(call.over, *pictures.front().camera, common.quiet);
     call.size = Size{call.photo->width, call.photo->height};
   }
-  std::vector<Json> ranges;
-  using Task = PartCall::Task;
-  const bool writes = call.part.task == Task::All || call.part.task == Task::Merge;
-  for (std::size_t k = 0; k < pictures.size() && writes && !call.range.empty(); ++k) {
-    ranges.push_back(sense_range({loaded.scene, query, *pictures[k].camera, call.size},
-                                 pictures[k].files.range, call.scene.overrides, common, times));
-  }
-  if (call.wire_alone()) {
-    const auto drawn =
-        lay_over(call.over, *call.photo, loaded.scene, query, *pictures.front().camera, {});
-    return base::write_png(call.png, drawn.width, drawn.height, 3, drawn.rgb);
-  }
+  const LightCall at{call, common, loaded, query, {}, Interrupt::asked};
+  const std::vector<Json> ranges = sense_ranges(at, pictures, times);
+  if (call.wire_alone()) return write_wires(at, *pictures.front().camera);
   if (call.range_alone()) {
     if (call.json) print(dump(ranges.size() == 1 ? ranges.front() : Json(ranges)));
     return check_skipped(skipped);
   }
-  for (const Wanted& picture : pictures) {
-    const raytrace::RenderOptions options = picture_options(call, common, loaded, *picture.camera);
-    check_instants(call, loaded.scene, *picture.camera, options);
-    check_memory(loaded, query, solve_options(loaded.scene, common), &options,
-                 call.solution.empty());
-  }
+  check_pictures(at, pictures);
   if (!call.part.in_parts()) expect_work(call, common, loaded, cameras_of(pictures));
   std::optional<Expectation> expected;
   if (!call.report.empty()) {
@@ -245,48 +303,24 @@ void run(RenderCall call, const Common& common) {
   // A solution shared by several parts has no partial result.
   std::optional<Interrupt> interrupt;
   if (!parts) interrupt.emplace();
-  const Solved light = parts
-                           ? parts->light(times)
-                           : find_light({call, common, loaded, query, {}, Interrupt::asked}, times);
+  const Solved light = parts ? parts->light(times) : find_light(at, times);
   RenderContext context{call, common, loaded, query, light};
-  if (call.part.task == Task::Solve) return;
+  if (call.part.task == PartCall::Task::Solve) return;
   if (!interrupt) interrupt.emplace();
-  if (call.part.task == Task::Share) return parts->draw_share(context);
-  if (call.part.task == Task::Merge) {
+  if (call.part.task == PartCall::Task::Share) return parts->draw_share(context);
+  if (call.part.task == PartCall::Task::Merge) {
     parts->check_complete();
     context.parts = &*parts;
   }
-  Json reports = Json::array();
-  std::vector<Picture> taken;
-  bool whole = true;
-  for (std::size_t k = 0; k < pictures.size() && whole; ++k) {
-    if (call.time_limit_s > 0.0) {
-      const double left = call.time_limit_s - times.total();
-      context.time_limit_s = std::max(1e-3, left / static_cast<double>(pictures.size() - k));
-    }
-    context.number = k;
-    if (k > 0) context.white_cd_per_m2 = taken.front().white_cd_per_m2;
-    Picture picture = take_picture(context, *pictures[k].camera, pictures[k].files, times);
-    times.add({{"pictures", picture.report["seconds"]["render"].get<double>()}});
-    whole = picture.whole;
-    if (!call.range.empty()) picture.report["range"] = ranges[k]["range"];
-    reports.push_back(picture.report);
-    taken.push_back(std::move(picture));
-  }
+  const Taken taken = take_pictures(context, pictures, ranges, times);
   interrupt.reset();
   if (expected) {
     base::write_text(call.report,
-                     dump(report_json(loaded, call, *expected, light.solution.report, taken, times,
-                                      base::cpu_seconds() - cpu_before)));
+                     dump(report_json(loaded, call, *expected, light.solution.report,
+                                      taken.pictures, times, base::cpu_seconds() - cpu_before)));
   }
-  if (call.json) print(dump(asked == 1 ? reports.front() : reports));
-  if (whole) {
-    for (const Picture& picture : taken) {
-      check_reached(call.scene, picture.limit, loaded.scene.quality.error.value_or(0.0));
-    }
-    return check_skipped(skipped);
-  }
-  end_interrupted(pictures[reports.size() - 1].files);
+  if (call.json) print(dump(asked == 1 ? taken.reports.front() : taken.reports));
+  check_end(call, loaded.scene, taken, pictures, skipped);
 }
 
 }  // namespace

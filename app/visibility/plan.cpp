@@ -32,6 +32,40 @@ double chain_seconds(const StudyCamera& camera) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+struct Pictures {
+  std::vector<const scenes::Camera*> cameras;
+  std::vector<raytrace::RenderOptions> options;
+};
+struct Forecast {
+  double solve_s = 0.0, memory_mib = 0.0;
+  std::vector<double> picture_s;
+};
+
+// From a pilot of the pictures.
+Forecast forecast(const StudyPart& part, const Pictures& pictures, const Common& common) {
+  if (pictures.cameras.empty()) return {};
+  const LoadedScene& basis = part.basis_scene;
+  const radiosity::SolveOptions solver = study_solver(basis.scene, common);
+  studies::MemoryCase sizes =
+      studies::memory_case(basis.scene, basis.groups, basis.effects, solver);
+  studies::expect_rows(sizes, basis.scene, *part.query, solver);
+  studies::add_picture(sizes, basis.groups, basis.effects, pictures.options.front());
+  (void)common.progress->begin("pilot of " + part.path, Work::Pilot,
+                               static_cast<double>(pictures.cameras.size()));
+  const studies::Pilot pilot = studies::expect_costs(
+      {basis.world(*part.query), solver, sizes.row_entries}, pictures.cameras, pictures.options);
+  Forecast found;
+  found.memory_mib = studies::memory_needed(sizes).total() / 1048576.0;
+  found.solve_s = studies::total_seconds(pilot.bill);
+  double drawn = 0.0;
+  for (const auto& picture : pilot.bill.pictures) {
+    found.picture_s.push_back(picture.seconds);
+    drawn += picture.seconds;
+  }
+  found.solve_s -= drawn;
+  return found;
+}
+
 Json plan_of(const StudyPart& part, const std::filesystem::path& folder, const Common& common) {
   const LoadedScene& basis = part.basis_scene;
   std::error_code ignored;
@@ -39,8 +73,7 @@ Json plan_of(const StudyPart& part, const std::filesystem::path& folder, const C
   const PartCall alone;
   std::optional<StudyFrames> frames;
   if (std::filesystem::is_directory(points, ignored)) frames.emplace(part, points, common, alone);
-  std::vector<const scenes::Camera*> cameras;
-  std::vector<raytrace::RenderOptions> pictures;
+  Pictures pictures;
   Json listed = Json::array();
   for (const StudyCamera& camera : part.cameras) {
     const bool found = frames && frames->has(camera);
@@ -59,29 +92,13 @@ Json plan_of(const StudyPart& part, const std::filesystem::path& folder, const C
     options.columns = camera.columns;
     options.rows = camera.rows;
     options.per_light = true;
-    cameras.push_back(camera.camera);
-    pictures.push_back(options);
+    pictures.cameras.push_back(camera.camera);
+    pictures.options.push_back(options);
   }
-  double solve = 0.0, memory_mib = 0.0;
-  if (!cameras.empty()) {
-    const radiosity::SolveOptions solver = study_solver(basis.scene, common);
-    studies::MemoryCase sizes =
-        studies::memory_case(basis.scene, basis.groups, basis.effects, solver);
-    studies::expect_rows(sizes, basis.scene, *part.query, solver);
-    studies::add_picture(sizes, basis.groups, basis.effects, pictures.front());
-    memory_mib = studies::memory_needed(sizes).total() / 1048576.0;
-    (void)common.progress->begin("pilot of " + part.path, Work::Pilot,
-                                 static_cast<double>(cameras.size()));
-    const studies::Pilot pilot = studies::expect_costs(
-        {basis.world(*part.query), solver, sizes.row_entries}, cameras, pictures);
-    double drawn = 0.0;
-    std::size_t next = 0;
-    for (Json& one : listed) {
-      if (one["found"].get<bool>()) continue;
-      one["seconds"] = pilot.bill.pictures[next].seconds;
-      drawn += pilot.bill.pictures[next++].seconds;
-    }
-    solve = studies::total_seconds(pilot.bill) - drawn;
+  const Forecast expected = forecast(part, pictures, common);
+  std::size_t next = 0;
+  for (Json& one : listed) {
+    if (!one["found"].get<bool>()) one["seconds"] = expected.picture_s[next++];
   }
   return {{"id", part.id},
           {"path", part.path},
@@ -91,8 +108,8 @@ Json plan_of(const StudyPart& part, const std::filesystem::path& folder, const C
           {"light_groups", basis.groups.count()},
           {"suns", part.basis->in_parts() ? part.basis->sun_parts() : 0},
           {"earth_cells", part.basis->in_parts() ? part.basis->earth_parts() : 0},
-          {"memory_mib", memory_mib},
-          {"solve_seconds", solve},
+          {"memory_mib", expected.memory_mib},
+          {"solve_seconds", expected.solve_s},
           {"cameras", listed}};
 }
 

@@ -84,7 +84,7 @@ Json settings_of(const studies::StudyFile& study, const std::string& command, st
           {"seed", seed}};
 }
 
-// What loading found and what is not simulated.
+// Warnings of loading, and effects that are not simulated.
 void add_notes_of_scene(const StudyPart& part, const std::string& scene,
                         std::vector<std::string>& notes) {
   for (const std::string& warning : part.loaded.scene.warnings) {

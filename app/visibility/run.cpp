@@ -83,7 +83,7 @@ class Runner {
                          poses ? &*poses : nullptr);
       StudyConditions conditions(*part, task_.study, frames.store(), common_);
       for (const StudyCamera& camera : part->cameras) {
-        if (!look_through(*part, camera, frames, conditions)) results_.complete = false;
+        if (!judge_camera(*part, camera, frames, conditions)) results_.complete = false;
       }
     }
     // A stopped study has no answers.
@@ -108,7 +108,7 @@ class Runner {
   }
 
   // Whether all was done.
-  bool look_through(const StudyPart& part, const StudyCamera& camera, StudyFrames& frames,
+  bool judge_camera(const StudyPart& part, const StudyCamera& camera, StudyFrames& frames,
                     StudyConditions& conditions) {
     CameraFindings found{part, camera, 0.0, 0.0, Judged(part.conditions())};
     const Json frame_cache_key = frames.cache_key(camera);
@@ -118,7 +118,7 @@ class Runner {
     if (!take_finished(work, found)) {
       std::optional<StudyFrames::Frame> frame;
       if (!Interrupt::asked()) frame = frames.frame(camera, results_.costs);
-      if (frame) look(work, *frame, found);
+      if (frame) judge_frame(work, *frame, found);
     }
     add_camera(results_, found);
     const Judged& done = found.conditions;
@@ -160,7 +160,7 @@ class Runner {
     return true;
   }
 
-  void look(const CameraWork& work, StudyFrames::Frame& frame, CameraFindings& found) {
+  void judge_frame(const CameraWork& work, StudyFrames::Frame& frame, CameraFindings& found) {
     take(frame, found);
     const studies::BasisView view = work.view_of(frame, results_.costs);
     found.conditions = work.judge(view, frame, work.all_batches(), results_.costs);

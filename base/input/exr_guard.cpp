@@ -80,7 +80,7 @@ class Value {
 };
 
 // These types must be parsed; others are skipped.
-bool tells_its_size(std::string_view type) {
+bool contains_its_size(std::string_view type) {
   return type == "chlist" || type == "stringvector" || type == "preview";
 }
 
@@ -172,7 +172,7 @@ class HeaderReader {
                            type, *size));
       }
       const bool counts_chunks = name == "chunkCount" && type == "int";
-      if (!counts_chunks && !tells_its_size(type)) {
+      if (!counts_chunks && !contains_its_size(type)) {
         file_.seekg(length, std::ios::cur);
         continue;
       }

@@ -48,8 +48,8 @@ void Shares::broadcast(const std::function<void(Parcel&)>& pass) const {
   bytes.resize(size);
   broadcast(bytes.data(), size);
   if (is_root()) return;
-  Parcel heard(std::move(bytes));
-  pass(heard);
+  Parcel received(std::move(bytes));
+  pass(received);
 }
 
 void Shares::sequential_reduce(const Pass& say, const Pass& listen) const {

@@ -46,14 +46,7 @@ const eyeOf = () => [view.across * solid.radius, view.down * solid.radius, view.
 const makeSolid = () => {
   const canvas = byId("picture"), gl = canvas.getContext("webgl2", { preserveDrawingBuffer: true });
   if (!gl) throw new Error("this browser has no WebGL2");
-  const program = gl.createProgram();
-  for (const [kind, text] of [[gl.VERTEX_SHADER, solidVertex], [gl.FRAGMENT_SHADER, solidFragment]]) {
-    const shader = gl.createShader(kind);
-    gl.shaderSource(shader, text);
-    gl.compileShader(shader);
-    gl.attachShader(program, shader);
-  }
-  gl.linkProgram(program);
+  const program = makeProgram(gl, solidVertex, solidFragment);
   if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
   gl.useProgram(program);
   const fill = (name, values, size, kind, isShare) => {

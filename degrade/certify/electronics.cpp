@@ -20,22 +20,16 @@ double overloaded(const Bench& bench, double limit, const std::string& kept) {
 
 Rows limit_rows(const Bench& bench) {
   const CctvCamera& camera = bench.camera();
-  Rows rows;
-  if (camera.saturation > 0.0) {
-    rows.push_back(within("saturation of the sensor", "1",
-                          overloaded(bench, camera.saturation, "saturation"), camera.saturation,
-                          chain_rounding * camera.saturation, "S = min(S, S_most)"));
-  } else {
-    rows.push_back(absent("saturation of the sensor", "1", "it holds any signal"));
-  }
-  if (camera.white_clip > 0.0) {
-    rows.push_back(within("white clip of the line", "1",
-                          overloaded(bench, camera.white_clip, "white-clip"), camera.white_clip,
-                          chain_rounding * camera.white_clip, "S = min(S, S_clip)"));
-  } else {
-    rows.push_back(absent("white clip of the line", "1", "the line carries any signal"));
-  }
-  return rows;
+  const auto row = [&](std::string_view name, double limit, const char* stage, std::string_view law,
+                       std::string_view without) {
+    return limit > 0.0 ? within(name, "1", overloaded(bench, limit, stage), limit,
+                                chain_rounding * limit, law)
+                       : absent(name, "1", without);
+  };
+  return {row("saturation of the sensor", camera.saturation, "saturation", "S = min(S, S_most)",
+              "it holds any signal"),
+          row("white clip of the line", camera.white_clip, "white-clip", "S = min(S, S_clip)",
+              "the line carries any signal")};
 }
 
 // Gain multiplies signal and noise, so that the noise of one seed must scale in every resel.

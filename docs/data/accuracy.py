@@ -75,8 +75,8 @@ def laws_of(result):
     for law in result["laws"]:
         if law["exponent"] is None:
             continue
-        doubt = f" ± {law['exponent_std_error']:.2f}" if law["exponent_std_error"] is not None else ""
-        rows.append((f"{law['method']} {law['series']}", law["x"], f"{law['exponent']:.2f}{doubt}", percent(law["floor"])))
+        uncertainty = f" ± {law['exponent_std_error']:.2f}" if law["exponent_std_error"] is not None else ""
+        rows.append((f"{law['method']} {law['series']}", law["x"], f"{law['exponent']:.2f}{uncertainty}", percent(law["floor"])))
     return table(("series", "x", "error ~ x^-p, p", "floor"), rows)
 
 
@@ -98,7 +98,7 @@ def chapter(name, result, command):
     text = [f"### {title}, {result['columns']} x {result['rows']}", "", f"`{command}`", "",
             f"![Error against CPU seconds and memory](../images/accuracy-{name}-seconds.svg)",
             f"![Error against each setting](../images/accuracy-{name}-settings.svg)", "",
-            f"Reference: two pictures of {result['reference']['paths_per_pixel']} paths a pixel, which tell errors from "
+            f"Reference: two pictures of {result['reference']['paths_per_pixel']} paths a pixel, which resolve errors from "
             f"{percent(result['reference']['resolution'])} on. Limits that no setting gets past: {limits or 'none'}.", ""]
     text += [found["sentence"] for found in result["worth"]]
     return "\n".join(text) + "\n\n" + wanted_of(result) + "\n" + laws_of(result) + "\n" + points_of(result)

@@ -178,8 +178,8 @@ ClosedBodies::ClosedBodies(const scenes::Scene& scene, const Vec3& centre,
   dark_outside_ = !cavities_.empty() && light_is_in_rooms(scene, parts.of, walls);
 }
 
-std::vector<std::pair<Vec3, Vec3>> differing_bodies(const ClosedBodies& a, const ClosedBodies& b) {
-  std::vector<std::pair<Vec3, Vec3>> boxes;
+std::vector<scenes::Box> differing_bodies(const ClosedBodies& a, const ClosedBodies& b) {
+  std::vector<scenes::Box> boxes;
   const auto surfaces_of = [](const ClosedBodies& all) {
     std::vector<const ClosedSurface*> found;
     for (const auto& body : all.bodies_) found.push_back(body.surface.get());
@@ -191,7 +191,7 @@ std::vector<std::pair<Vec3, Vec3>> differing_bodies(const ClosedBodies& a, const
   std::ranges::set_symmetric_difference(surfaces_of(a), surfaces_of(b), std::back_inserter(differ));
   for (const ClosedSurface* surface : differ) {
     const auto [low, high] = surface->box();
-    boxes.emplace_back(low + a.centre_, high + a.centre_);
+    boxes.push_back({low + a.centre_, high + a.centre_});
   }
   return boxes;
 }

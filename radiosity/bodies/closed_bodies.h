@@ -46,7 +46,7 @@ class ClosedSurface {
   }
   // Whether it is made of these corners.
   [[nodiscard]] bool is_of(std::span<const Vec3> corners) const;
-  [[nodiscard]] std::pair<Vec3, Vec3> box() const { return {low_, high_}; }
+  [[nodiscard]] scenes::Box box() const { return {low_, high_}; }
   [[nodiscard]] double volume_m3() const { return volume_m3_; }  // positive if oriented outward
   [[nodiscard]] double box_m3() const {
     const Vec3 size = high_ - low_;
@@ -94,8 +94,7 @@ class ClosedBodies {
   // Everything outside of rooms is covered.
   [[nodiscard]] bool has_dark_outside() const { return dark_outside_; }
   // Boxes, in the scene, of surfaces that cover points in one of two poses only.
-  friend std::vector<std::pair<Vec3, Vec3>> differing_bodies(const ClosedBodies& a,
-                                                             const ClosedBodies& b);
+  friend std::vector<scenes::Box> differing_bodies(const ClosedBodies& a, const ClosedBodies& b);
 
  private:
   using SharedSurface = std::shared_ptr<const ClosedSurface>;
@@ -124,7 +123,7 @@ class ClosedBodies {
   scenes::CoincidentFaces coincident_;
 };
 
-[[nodiscard]] std::vector<std::pair<Vec3, Vec3>> differing_bodies(const ClosedBodies& a,
-                                                                  const ClosedBodies& b);
+[[nodiscard]] std::vector<scenes::Box> differing_bodies(const ClosedBodies& a,
+                                                        const ClosedBodies& b);
 
 }  // namespace earthshine::radiosity

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "radiosity/patches/cluster_members.h"
-#include "scenes/triangle_point.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -17,79 +16,73 @@ constexpr std::size_t leaves = 256;
 }  // namespace
 
 MovedParts::MovedParts(const std::vector<Vec3>& then, const ClosedBodies& bodies_then,
-                       const scenes::Scene& now, const ClosedBodies& bodies_now)
-    : moved_(now.triangles.size(), 0) {
-  all_ = then.size() != now.vertices.size() || bodies_then.has_dark_outside() ||
-         bodies_now.has_dark_outside();
-  if (all_) return;
-  margin_m_ = rounding * scenes::box_around(now.vertices).diagonal();
-  std::vector<Item> items;
+                       const scenes::Scene& now, const ClosedBodies& bodies_now,
+                       const Patches& patches, double margin_m)
+    : unmoved_(patches.count(), 0) {
+  // Everything may have changed.
+  if (then.size() != now.vertices.size() || bodies_then.has_dark_outside() ||
+      bodies_now.has_dark_outside()) {
+    return;
+  }
+  const double rounding_m = rounding * scenes::box_around(now.vertices).diagonal();
+  std::vector<char> moved(now.triangles.size(), 0);
+  std::vector<scenes::Box> items;
   std::vector<scenes::Box> of_object(now.objects.size());
   for (std::uint32_t t = 0; t < now.triangles.size(); ++t) {
     const auto& vertex = now.triangles[t].vertex;
     if (std::ranges::none_of(vertex, [&](std::uint32_t v) { return then[v] != now.vertices[v]; })) {
       continue;
     }
-    moved_[t] = 1;
+    moved[t] = 1;
     for (const std::vector<Vec3>* pose : {&then, &now.vertices}) {
       scenes::Box box;
       for (const std::uint32_t v : vertex) box.add((*pose)[v]);
-      of_object[now.triangles[t].object].add(box.low);
-      of_object[now.triangles[t].object].add(box.high);
-      items.push_back({box.low - margin_m_, box.high + margin_m_});
+      of_object[now.triangles[t].object].add(box);
+      items.push_back({box.low - rounding_m, box.high + rounding_m});
     }
   }
+  std::vector<scenes::Box> around = differing_bodies(bodies_then, bodies_now);
   for (const scenes::Box& box : of_object) {
-    if (box.low.x <= box.high.x) around_.push_back({box.low, box.high});
+    if (box.low.x <= box.high.x) around.push_back(box);
   }
-  for (const auto& [low, high] : differing_bodies(bodies_then, bodies_now)) {
-    around_.push_back({low, high});
+  for (std::uint32_t i = 0; i < patches.count(); ++i) {
+    const Facet& facet = patches.facets[patches.facet[i]];
+    bool stays = moved[facet.triangle] == 0;
+    if (facet.parallelogram) stays = stays && moved[facet.triangle + 1] == 0;
+    for (std::uint32_t m = 0; stays && m < facet.members; ++m) {
+      stays = moved[patches.clustered->triangle[facet.first_member + m]] == 0;
+    }
+    if (!stays) continue;
+    const auto [low, high] = patches.box(i);
+    const Vec3 from = low - (margin_m + rounding_m), to = high + (margin_m + rounding_m);
+    unmoved_[i] = std::ranges::none_of(around, [&](const scenes::Box& box) {
+      return glm::all(glm::lessThanEqual(from, box.high)) &&
+             glm::all(glm::lessThanEqual(box.low, to));
+    });
   }
   most_of_leaf_ = std::max<std::size_t>(1, items.size() / leaves);
   if (!items.empty()) build(items, 0, items.size());
 }
 
-void MovedParts::build(std::vector<Item>& items, std::size_t begin, std::size_t end) {
+void MovedParts::build(std::vector<scenes::Box>& items, std::size_t begin, std::size_t end) {
   const std::size_t number = nodes_.size();
-  Item all = items[begin];
-  for (std::size_t k = begin; k < end; ++k) {
-    all.low = glm::min(all.low, items[k].low);
-    all.high = glm::max(all.high, items[k].high);
-  }
+  scenes::Box all;
+  for (std::size_t k = begin; k < end; ++k) all.add(items[k]);
   const bool is_leaf = end - begin <= most_of_leaf_;
-  nodes_.push_back({all.low, all.high, 0, is_leaf});
+  nodes_.push_back({all, 0, is_leaf});
   if (!is_leaf) {
     const Vec3 size = all.high - all.low;
     const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
     const std::size_t middle = begin + (end - begin) / 2;
     const auto at = [&](std::size_t k) { return items.begin() + static_cast<std::ptrdiff_t>(k); };
-    std::nth_element(at(begin), at(middle), at(end), [axis](const Item& a, const Item& b) {
-      return a.low[axis] + a.high[axis] < b.low[axis] + b.high[axis];
-    });
+    std::nth_element(at(begin), at(middle), at(end),
+                     [axis](const scenes::Box& a, const scenes::Box& b) {
+                       return a.low[axis] + a.high[axis] < b.low[axis] + b.high[axis];
+                     });
     build(items, begin, middle);
     build(items, middle, end);
   }
   nodes_[number].skip = static_cast<std::uint32_t>(nodes_.size());
-}
-
-std::vector<char> MovedParts::unmoved(const Patches& patches, double margin_m) const {
-  std::vector<char> kept(patches.count(), 0);
-  for (std::uint32_t i = 0; !all_ && i < patches.count(); ++i) {
-    const Facet& facet = patches.facets[patches.facet[i]];
-    bool stays = moved_[facet.triangle] == 0;
-    if (facet.parallelogram) stays = stays && moved_[facet.triangle + 1] == 0;
-    for (std::uint32_t m = 0; stays && m < facet.members; ++m) {
-      stays = moved_[patches.clustered->triangle[facet.first_member + m]] == 0;
-    }
-    if (!stays) continue;
-    const auto [low, high] = patches.box(i);
-    const Vec3 from = low - (margin_m + margin_m_), to = high + (margin_m + margin_m_);
-    kept[i] = std::ranges::none_of(around_, [&](const Item& box) {
-      return glm::all(glm::lessThanEqual(from, box.high)) &&
-             glm::all(glm::lessThanEqual(box.low, to));
-    });
-  }
-  return kept;
 }
 
 bool MovedParts::meets(const Vec3& from, const Vec3& direction, double t_max,
@@ -99,8 +92,8 @@ bool MovedParts::meets(const Vec3& from, const Vec3& direction, double t_max,
     const Node& node = nodes_[k];
     double enter = 0.0, leave = t_max;
     for (int axis = 0; axis < 3; ++axis) {
-      const double low = node.low[axis] - radius_m - from[axis];
-      const double high = node.high[axis] + radius_m - from[axis];
+      const double low = node.box.low[axis] - radius_m - from[axis];
+      const double high = node.box.high[axis] + radius_m - from[axis];
       if (direction[axis] == 0.0) {
         if (low > 0.0 || high < 0.0) leave = -1.0;
         continue;

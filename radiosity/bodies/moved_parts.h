@@ -8,20 +8,21 @@
 
 #include "radiosity/bodies/closed_bodies.h"
 #include "radiosity/patches/patches.h"
-#include "scenes/scene.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::radiosity {
 
 class MovedParts {
  public:
   // then: the vertices in the earlier pose, of the same triangles. bodies: of both poses; those of
-  // one of them only count as moved.
+  // one of them only count as moved. patches: of this pose; margin_m: around each of them.
   MovedParts(const std::vector<Vec3>& then, const ClosedBodies& bodies_then,
-             const scenes::Scene& now, const ClosedBodies& bodies_now);
+             const scenes::Scene& now, const ClosedBodies& bodies_now, const Patches& patches,
+             double margin_m);
 
-  // Patches that did not move and lie in no box of a moved body or object: they are covered by the
-  // same bodies in both poses. margin_m: around the patch.
-  [[nodiscard]] std::vector<char> unmoved(const Patches& patches, double margin_m) const;
+  // Whether a patch did not move and lies in no box of a moved body or object: the same bodies
+  // cover it in both poses.
+  [[nodiscard]] bool is_unmoved(std::size_t patch) const { return unmoved_[patch] != 0; }
 
   // Whether a ray without end, of unit direction, meets a box.
   [[nodiscard]] bool on_ray(const Vec3& origin, const Vec3& direction) const;
@@ -30,25 +31,19 @@ class MovedParts {
                              double radius_b_m) const;
 
  private:
-  struct Item {
-    Vec3 low, high;
-  };
   struct Node {
-    Vec3 low, high;
+    scenes::Box box;
     std::uint32_t skip;  // the next node if the box is missed
     bool is_leaf;
   };
-  void build(std::vector<Item>& items, std::size_t begin, std::size_t end);
+  void build(std::vector<scenes::Box>& items, std::size_t begin, std::size_t end);
   // Whether the segment from, from + t direction, t in [0, t_max], meets a box widened by radius_m.
   [[nodiscard]] bool meets(const Vec3& from, const Vec3& direction, double t_max,
                            double radius_m) const;
 
-  std::vector<char> moved_;  // per triangle
-  std::vector<Node> nodes_;  // in preorder
-  std::vector<Item> around_;
-  double margin_m_ = 0.0;
+  std::vector<char> unmoved_;  // per patch
+  std::vector<Node> nodes_;    // in preorder
   std::size_t most_of_leaf_ = 1;
-  bool all_ = false;  // everything may have changed: nothing may be kept
 };
 
 }  // namespace earthshine::radiosity

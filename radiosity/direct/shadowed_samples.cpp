@@ -201,7 +201,7 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
       const auto patch = static_cast<std::uint32_t>(i);
       const double share = open.share.empty() ? 1.0 : open.share[i];
       if (share <= 0.0) continue;
-      if (known != nullptr && kept->unmoved[i] != 0 && open_then(i) == share &&
+      if (known != nullptr && kept->moved->is_unmoved(i) && open_then(i) == share &&
           is_clear(*kept->moved, *lamp, mirrors, patches, patch)) {
         sampled.illuminance_lx[i] = known->illuminance_lx[i];
         sampled.variance[i] = known->variance[i];

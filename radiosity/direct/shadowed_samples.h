@@ -64,7 +64,6 @@ struct KeptSamples {
   std::vector<scenes::FlatMirror> mirrors;
   std::vector<double> open_share;     // OpenParts::share
   const MovedParts* moved = nullptr;  // since then; null: nothing may be kept
-  std::vector<char> unmoved;          // MovedParts::unmoved
 };
 
 // Replaces `samples` by the source's samples at a surface, direct and by flat mirrors.

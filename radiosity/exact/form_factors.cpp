@@ -238,15 +238,15 @@ ExactFormFactors exact_form_factors(const scenes::Scene& scene, const scenes::Ra
       result.report.open_std_error[i] = covers[i].std_error;
       credible[i] += 4.0 * covers[i].std_error / covers[i].open;
     }
-    const auto look_out = [&](std::uint32_t ray_count) {
+    const auto cast = [&](std::uint32_t ray_count) {
       open[i] = cast_open(query, patches, static_cast<std::uint32_t>(i), ray_count, options.seed,
                           sky, factors.open.bodies.get(), covers);
     };
-    look_out(rays);
+    cast(rays);
     // Open by more than the credible error, through a gap that few rays find.
     const bool found_none = open[i].sky + open[i].black == 0;
     if (found_none && 1.0 - landed_share(factors, i) > credible[i] && rays < gap_rays) {
-      look_out(gap_rays);
+      cast(gap_rays);
     }
   });
   result.report.pairs = count < 2 ? 0 : std::uint64_t{count} * (count - 1) / 2;

@@ -14,7 +14,22 @@ namespace earthshine::radiosity {
 class HitTargets {
  public:
   // passes_on: per material, whether rays continue from it (mirror, glass).
-  HitTargets(const Patches& patches, const std::vector<bool>& passes_on);
+  HitTargets(const Patches& patches, const std::vector<bool>& passes_on)
+      : patches_(patches), targets_(patches.of_triangle.size()) {
+    for (std::size_t k = 0; k < targets_.size(); ++k) {
+      const Facet& facet = patches.facets[patches.of_triangle[k]];
+      const auto half = static_cast<std::uint8_t>(triangle_kinds + patches.second_half[k]);
+      targets_[k] = {facet.s_count,
+                     facet.t_count,
+                     facet.first_front,
+                     facet.first_back,
+                     facet.tree,
+                     facet.is_cluster()    ? cluster_kind
+                     : facet.parallelogram ? half
+                                           : facet.apex,
+                     static_cast<std::uint8_t>(passes_on[facet.material])};
+    }
+  }
 
   [[nodiscard]] bool passes_on(std::uint32_t triangle) const {
     return targets_[triangle].passes_on != 0;

@@ -32,7 +32,6 @@ struct KeptRow {
 struct KeptRows {
   std::vector<KeptRow> rows;          // per patch; empty: of no pose yet
   const MovedParts* moved = nullptr;  // since then; null: nothing may be kept
-  std::vector<char> unmoved;          // MovedParts::unmoved
 };
 
 }  // namespace earthshine::radiosity

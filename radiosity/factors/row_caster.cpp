@@ -30,24 +30,6 @@ Vec3 direction(const RayPacket& packet, std::size_t k) {
 
 }  // namespace
 
-HitTargets::HitTargets(const Patches& patches, const std::vector<bool>& passes_on)
-    : patches_(patches), targets_(patches.of_triangle.size()) {
-  for (std::size_t k = 0; k < targets_.size(); ++k) {
-    const Facet& facet = patches.facets[patches.of_triangle[k]];
-    Target& target = targets_[k];
-    target.s_count = facet.s_count;
-    target.t_count = facet.t_count;
-    target.first_front = facet.first_front;
-    target.first_back = facet.first_back;
-    target.tree = facet.tree;
-    target.passes_on = passes_on[facet.material] ? 1 : 0;
-    target.kind =
-        static_cast<std::uint8_t>(facet.is_cluster()    ? cluster_kind
-                                  : facet.parallelogram ? triangle_kinds + patches.second_half[k]
-                                                        : facet.apex);
-  }
-}
-
 RowCaster::RowCaster(const scenes::Scene& scene, const scenes::RayQuery& query,
                      const Patches& patches, const std::vector<double>& kept,
                      const FormFactorOptions& options, std::uint32_t rays,
@@ -80,9 +62,9 @@ void RowCaster::cast(std::uint32_t patch, HitCounter& counter, Band& band) const
   std::vector<std::uint32_t> near;
   const std::size_t first_part = band.sky_illuminance.size();
   band.sky_illuminance.resize(first_part + sky_parts_, Rgb(0.0));
-  const bool looks_first = leave_out_covered_ && may_be_covered(patch);
-  if (looks_first) near = bodies_near(patch);
-  if (!trace(patch, sender, leave_out_covered_ && !looks_first, near, row, counter, band)) {
+  const bool knows_covers = leave_out_covered_ && may_be_covered(patch);
+  if (knows_covers) near = bodies_near(patch);
+  if (!trace(patch, sender, leave_out_covered_ && !knows_covers, near, row, counter, band)) {
     counter.clear();
     band.backs_met.clear();
     band.missed.clear();
@@ -123,7 +105,7 @@ void RowCaster::keep(std::uint32_t patch, const Row& row, const Band& band) cons
 
 bool RowCaster::restore(std::uint32_t patch, const PatchRays::Sender& first, Band& band) const {
   const KeptRow& kept = kept_rows_->rows[patch];
-  if (kept_rows_->moved == nullptr || kept_rows_->unmoved[patch] == 0 || !kept.is_plain) {
+  if (kept_rows_->moved == nullptr || !kept_rows_->moved->is_unmoved(patch) || !kept.is_plain) {
     return false;
   }
   const std::size_t first_part = band.sky_illuminance.size();
@@ -153,10 +135,10 @@ bool RowCaster::restore(std::uint32_t patch, const PatchRays::Sender& first, Ban
   return true;
 }
 
-// Counts the patch's rays, except from points covered by the bodies `near`. look_out: stops at the
+// Counts the patch's rays, except from points covered by the bodies `near`. stop_at_back: stops at the
 // first black back and returns false if bodies near the patch may be the cause, and lists them. A
 // patch that sees no back is not covered and costs nothing extra.
-bool RowCaster::trace(std::uint32_t patch, PatchRays::Sender sender, bool look_out,
+bool RowCaster::trace(std::uint32_t patch, PatchRays::Sender sender, bool stop_at_back,
                       std::vector<std::uint32_t>& near, Row& row, HitCounter& counter,
                       Band& band) const {
   // A packet's hits are counted after the next packet was traced: by then their data has arrived
@@ -176,8 +158,8 @@ bool RowCaster::trace(std::uint32_t patch, PatchRays::Sender sender, bool look_o
     }
     if (n == 0) continue;
     count_hits(packets[(n - 1) % 2], hits[(n - 1) % 2], n - 1, near, row, counter, band);
-    if (!look_out || !(row.black > 0.0 || (row.sky > 0.0 && dark_sky_))) continue;
-    look_out = false;
+    if (!stop_at_back || !(row.black > 0.0 || (row.sky > 0.0 && dark_sky_))) continue;
+    stop_at_back = false;
     near = bodies_near(patch);
     if (!near.empty()) return false;
   }

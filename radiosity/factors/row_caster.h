@@ -43,7 +43,7 @@ class RowCaster {
   [[nodiscard]] std::shared_ptr<const ClosedBodies> bodies() const;
 
  private:
-  bool trace(std::uint32_t patch, PatchRays::Sender sender, bool look_out,
+  bool trace(std::uint32_t patch, PatchRays::Sender sender, bool stop_at_back,
              std::vector<std::uint32_t>& near, Row& row, HitCounter& counter, Band& band) const;
   // Appends the row of an earlier pose, if it is the same in this one.
   bool restore(std::uint32_t patch, const PatchRays::Sender& sender, Band& band) const;

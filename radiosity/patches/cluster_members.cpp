@@ -29,8 +29,6 @@ ClusterSpan span_of(const Facet& cluster, const Cell& cell) {
   return span;
 }
 
-namespace {
-
 Facet facet_about(const std::array<Vec3, 3>& p, std::uint8_t apex) {
   Facet facet;
   facet.apex = apex;
@@ -42,8 +40,6 @@ Facet facet_about(const std::array<Vec3, 3>& p, std::uint8_t apex) {
   facet.normal = glm::normalize(cross);
   return facet;
 }
-
-}  // namespace
 
 std::uint8_t apex_of(const std::array<Vec3, 3>& p) {
   const auto squared = [](const Vec3& edge) { return glm::dot(edge, edge); };
@@ -131,7 +127,7 @@ std::array<Vec3, 4> ClusterMembers::corners(const ClusterSpan& span) const {
           frame.to_world({high.x, high.y, height}), frame.to_world({low.x, high.y, height})};
 }
 
-std::pair<Vec3, Vec3> ClusterMembers::box(const ClusterSpan& span) const {
+scenes::Box ClusterMembers::box(const ClusterSpan& span) const {
   Vec3 low(std::numeric_limits<double>::infinity()), high = -low;
   for (std::uint32_t m = span.first; m < span.first + span.count; ++m) {
     for (const std::uint32_t v : corner[m]) {

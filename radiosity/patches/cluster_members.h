@@ -50,12 +50,13 @@ struct ClusterMembers {
 
   // A rectangle normal to the mean normal below all triangles; counter-clockwise.
   [[nodiscard]] std::array<Vec3, 4> corners(const ClusterSpan& span) const;
-  [[nodiscard]] std::pair<Vec3, Vec3> box(const ClusterSpan& span) const;
+  [[nodiscard]] scenes::Box box(const ClusterSpan& span) const;
 };
 
 // The corner opposite the shortest edge; if several, the first one.
 [[nodiscard]] std::uint8_t apex_of(const std::array<Vec3, 3>& corners);
 // The triangle as an undivided facet.
+[[nodiscard]] Facet facet_about(const std::array<Vec3, 3>& corners, std::uint8_t apex);
 [[nodiscard]] Facet facet_of_triangle(const Vec3& p0, const Vec3& p1, const Vec3& p2);
 
 // Lengths of the edges along a and along t, which determine the division of triangular facets.

@@ -227,7 +227,7 @@ std::array<Vec3, 4> Patches::corners(std::uint32_t patch) const {
   return of(clustered->facet(span.first), span.part);
 }
 
-std::pair<Vec3, Vec3> Patches::box(std::uint32_t patch) const {
+scenes::Box Patches::box(std::uint32_t patch) const {
   const Facet& f = facets[facet[patch]];
   if (f.is_cluster()) return clustered->box(span_of(f, cell[patch]));
   const std::array<Vec3, 4> c = corners(patch);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scenes/scene.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::radiosity {
 
@@ -142,7 +143,7 @@ class Patches {
   // Counter-clockwise about the patch's own normal; a triangle's apex is repeated. For several
   // triangles: a rectangle below them, normal to their mean normal.
   [[nodiscard]] std::array<Vec3, 4> corners(std::uint32_t patch) const;
-  [[nodiscard]] std::pair<Vec3, Vec3> box(std::uint32_t patch) const;  // low, high
+  [[nodiscard]] scenes::Box box(std::uint32_t patch) const;  // low, high
   // A point of the patch, uniform in area for uniform (x, y) in [0,1]^2.
   [[nodiscard]] SurfacePoint at(std::uint32_t patch, double x, double y) const;
   [[nodiscard]] Vec3 point(std::uint32_t patch, double x, double y) const {

@@ -18,17 +18,16 @@ Patches posed_patches(Patches patches, const scenes::Scene& scene) {
       continue;
     }
     const auto& vertex = scene.triangles[facet.triangle].vertex;
-    const auto at = [&](std::uint32_t v) { return scene.vertices[v]; };
-    const std::size_t apex = facet.parallelogram ? 0 : facet.apex;
-    const Vec3 corner = at(vertex[apex]), a = at(vertex[(apex + 1) % 3]) - corner;
-    const Vec3 b = (facet.parallelogram ? at(scene.triangles[facet.triangle + 1].vertex[2])
-                                        : at(vertex[(apex + 2) % 3])) -
-                   corner;
-    if (corner == facet.corner && a == facet.a && b == facet.b) continue;
-    facet.corner = corner;
-    facet.a = a;
-    facet.b = b;
-    facet.normal = glm::normalize(glm::cross(a, b));
+    const std::uint32_t third =
+        facet.parallelogram ? scene.triangles[facet.triangle + 1].vertex[2] : vertex[2];
+    const Facet now =
+        facet_about({scene.vertices[vertex[0]], scene.vertices[vertex[1]], scene.vertices[third]},
+                    facet.parallelogram ? 0 : facet.apex);
+    if (now.corner == facet.corner && now.a == facet.a && now.b == facet.b) continue;
+    facet.corner = now.corner;
+    facet.a = now.a;
+    facet.b = now.b;
+    facet.normal = now.normal;
   }
   return patches;
 }

@@ -45,7 +45,7 @@ void neighbours_of(const radiosity::Patches& patches, const radiosity::Facet& fa
 }
 
 // Appends the pairs that do not see each other, moved up to the side's first patch.
-void look_across(const scenes::RayQuery& query, const radiosity::Patches& patches,
+void find_parted(const scenes::RayQuery& query, const radiosity::Patches& patches,
                  const std::vector<Pair>& pairs, std::uint32_t first, std::vector<Pair>& parted) {
   constexpr double lift_per_length = 1e-3;  // above rounding errors where a wall meets the floor
   scenes::RayPacket packet;
@@ -80,7 +80,7 @@ LeakMask::LeakMask(const scenes::RayQuery& query, const radiosity::Patches& patc
       neighbours_of(patches, facet, pairs);
       for (const std::uint32_t first : {facet.first_front, facet.first_back}) {
         if (first == radiosity::no_patch) continue;
-        look_across(query, patches, pairs, first, parted);
+        find_parted(query, patches, pairs, first, parted);
         rays += pairs.size();
       }
     }

@@ -49,8 +49,8 @@ void shade_pixel(const ShadingScene& shared, const CameraModel& camera, int x, i
         // Where the gather points of the picture, in the middle of the exposure, show the hit.
         at[k] = middle.film_from(middle.position, rays[k].origin + hit.t * rays[k].direction);
       }
-      shader.look_near(static_cast<int>(std::floor(at[k].x)),
-                       static_cast<int>(std::floor(at[k].y)));
+      shader.set_gather_pixel(static_cast<int>(std::floor(at[k].x)),
+                              static_cast<int>(std::floor(at[k].y)));
       shader.add_sample(from + k, *cameras[k], rays[k], hit);
     }
   }

@@ -59,7 +59,7 @@ class PixelShader {
                    bool by_layer);
   // Sets the pixel that the next sample falls into (a wide pixel filter displaces samples), for
   // look-ups in the gather field.
-  void look_near(int x, int y) {
+  void set_gather_pixel(int x, int y) {
     x_ = x;
     y_ = y;
   }

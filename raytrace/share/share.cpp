@@ -174,8 +174,8 @@ class Sharer {
   }
 
   // Relative mean squares of the details' noise, from the sample counts. In a mean weighted by
-  // samples n and B-spline weights k, a point has the weight w = k0 n / N, N = sum k n. The noise
-  // of its own value is (1 - w)^2 / n, of the others about (K / N - w^2 / n), K = sum k^2.
+  // samples n and B-spline weights k, a point has the weight w = k0 n / N, N = sum k n. Its value
+  // has the noise (1 - w)^2 / n, the other values about (K / N - w^2 / n), K = sum k^2.
   void expect(std::size_t level) {
     constexpr float own = 9.0F / 64.0F, squares = 0.0748F;
     expected_.resize(points_);

@@ -87,9 +87,9 @@ class Tree {
     if (!order_.empty()) build(0, order_.size());
   }
 
-  // Calls look(a, b) for pairs of different objects with overlapping boxes, until it returns false.
-  template <class Look>
-  void pairs(Look look) const {
+  // Calls visit(a, b) for pairs of different objects with overlapping boxes, until it returns false.
+  template <class Visit>
+  void pairs(Visit visit) const {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> open{{0, 0}};
     while (!open.empty()) {
       const auto [m, n] = open.back();
@@ -103,7 +103,7 @@ class Tree {
           for (std::size_t j = m == n ? i + 1 : b.begin; j < b.end; ++j) {
             const std::uint32_t s = order_[i], t = order_[j];
             if (scene_.triangles[s].object == scene_.triangles[t].object) continue;
-            if (overlap(boxes_[s], boxes_[t]) && !look(s, t)) return;
+            if (overlap(boxes_[s], boxes_[t]) && !visit(s, t)) return;
           }
         }
       } else if (m == n) {

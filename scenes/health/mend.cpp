@@ -137,7 +137,7 @@ void lift_lamps(Scene& scene) {
     if (!free) {
       scene.warnings.push_back(
           fmt::format("lamp {} stands between surfaces of the object {} and others that are less "
-                      "than {:.2g} mm apart: single precision cannot tell where its light goes; "
+                      "than {:.2g} mm apart: single precision cannot resolve where its light goes; "
                       "move it",
                       name, object, 2000.0 * first.reach_m));
       continue;
@@ -145,7 +145,7 @@ void lift_lamps(Scene& scene) {
     const std::string where =
         first.on_it ? "on" : fmt::format("{:.2g} mm from", 1000.0 * first.distance_m);
     scene.warnings.push_back(
-        fmt::format("lamp {} is {} the object {}, nearer than single precision tells apart: taken "
+        fmt::format("lamp {} is {} the object {}, nearer than single precision resolves: taken "
                     "to be {:.2g} mm {}",
                     name, where, object, 1000.0 * glm::length(*free - lamp.position),
                     first.on_it ? "in front of it" : "farther off"));

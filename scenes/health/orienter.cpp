@@ -235,7 +235,7 @@ Orienter::Inside Orienter::what_is_inside(std::size_t number, std::size_t p) {
   return parts.any_beside(part, holds) ? Inside::Things : Inside::Nothing;
 }
 
-// Whether it lies in a body of its own object that is oriented outward.
+// Whether it lies in an outward body of the same object.
 bool Orienter::is_cavity(std::size_t number, std::size_t p) {
   const Parts& parts = parts_of(number);
   const SurfacePart& part = parts.all[p];

@@ -24,7 +24,7 @@ bool is_rectangle(const FlatEmitter& emitter) {
 }
 
 // Merges `first` and `second` into a rectangle if they are its halves (0,1,2) and (0,2,3).
-bool joins(FlatEmitter& first, const FlatEmitter& second) {
+bool merge_halves(FlatEmitter& first, const FlatEmitter& second) {
   const Vec3 gap = first.corner + first.edge2 - (second.corner + second.edge1);
   const Vec3 side = first.edge1 + second.edge2 - second.edge1;
   const double tolerance = 1e-6 * (glm::length(first.edge1) + glm::length(second.edge2));
@@ -149,7 +149,7 @@ void EmitterSet::add(const Scene& scene, std::uint32_t triangle) {
     return;
   }
   const bool follows = triangle > 0 && scene.triangles[triangle - 1].polygon == t.polygon;
-  if (follows && !pieces_.empty() && joins(pieces_.back(), piece)) return;
+  if (follows && !pieces_.empty() && merge_halves(pieces_.back(), piece)) return;
   pieces_.push_back(piece);
 }
 

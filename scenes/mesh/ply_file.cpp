@@ -82,7 +82,7 @@ void read_header_line(const TextLines& lines, Header& header, bool& has_format) 
 
 Header read_header(std::string_view bytes, const std::string& file) {
   constexpr std::string_view last = "end_header";
-  // A comment may contain the word; the header's end is a line of its own.
+  // A comment may contain the word; the header's end is a separate line.
   std::size_t end = bytes.find(last);
   while (end != std::string_view::npos && end > 0 && bytes[end - 1] != '\n') {
     end = bytes.find(last, end + 1);

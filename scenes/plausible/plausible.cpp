@@ -112,7 +112,7 @@ Texts implausible_input(const Scene& scene, const RayQuery& query, const SceneUs
   std::vector<Box> bounds;
   for (const Object& object : scene.objects) bounds.push_back(bounds_of(scene, object));
   std::vector<View> views;
-  for (const Camera* camera : cameras) views.push_back(look(scene, query, *camera, bounds));
+  for (const Camera* camera : cameras) views.push_back(sample_view(scene, query, *camera, bounds));
   add(implausible_size(scene, views));
   add(implausible_views(scene, views));
   for (const Camera* camera : cameras) {

@@ -138,8 +138,8 @@ Vec3 leave_toward(const Scene& scene, const RayQuery& query, const Hit& hit,
   return hit_position(scene, hit) + side * query.offset_m(hit.triangle) * normal;
 }
 
-View look(const Scene& scene, const RayQuery& query, const Camera& camera,
-          const std::vector<Box>& bounds) {
+View sample_view(const Scene& scene, const RayQuery& query, const Camera& camera,
+                 const std::vector<Box>& bounds) {
   View view;
   view.camera = &camera;
   view.hits_of.resize(scene.objects.size());

@@ -33,8 +33,8 @@ struct View {
 };
 
 // Pinhole view at the lens's centre. bounds: of the objects.
-[[nodiscard]] View look(const Scene& scene, const RayQuery& query, const Camera& camera,
-                        const std::vector<Box>& bounds);
+[[nodiscard]] View sample_view(const Scene& scene, const RayQuery& query, const Camera& camera,
+                               const std::vector<Box>& bounds);
 
 // Problems of the views: backs only, a surface directly before the lens, a field of view in
 // radians. At most one line for each problem and camera.

@@ -164,15 +164,7 @@ SunFollower read_follower(const Scene& scene, const TableReader& table, const Ve
     table.fail("normal", "is along the axis", "it turns about the axis to face the Sun");
   }
   if (const TomlEntry* limits = table.find("limits_deg")) {
-    const auto* items = std::get_if<TomlArray>(&limits->node.value);
-    std::vector<double> pair;
-    for (std::size_t k = 0; items != nullptr && k < items->size(); ++k) {
-      const TomlNode& item = (*items)[k];
-      if (const auto* real = std::get_if<double>(&item.value)) pair.push_back(*real);
-      if (const auto* whole = std::get_if<std::int64_t>(&item.value)) {
-        pair.push_back(static_cast<double>(*whole));
-      }
-    }
+    const std::vector<double> pair = numbers_of(limits->node);
     const bool good = pair.size() == 2 && pair[0] >= -360.0 && pair[0] <= pair[1] &&
                       pair[1] <= 360.0 && pair[1] - pair[0] <= 360.0;
     if (!good) {

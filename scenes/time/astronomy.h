@@ -71,6 +71,9 @@ struct State {
 [[nodiscard]] double sun_distance_m(Instant t);
 [[nodiscard]] Vec3 moon_position_m(Instant t);
 
+// The WGS 84 ellipsoid (NIMA TR8350.2, 2000).
+inline constexpr double earth_equator_m = 6378137.0, earth_flattening = 1.0 / 298.257223563;
+
 // The subpoint on the WGS 84 ellipsoid.
 struct GroundPoint {
   double latitude_deg = 0.0, longitude_deg = 0.0;  // geodetic; east

@@ -11,8 +11,6 @@
 namespace earthshine::scenes {
 namespace {
 
-// WGS 84 (NIMA TR8350.2, 2000).
-constexpr double earth_equator_m = 6378137.0, earth_flattening = 1.0 / 298.257223563;
 constexpr double sun_radius_m = 695.7e6;  // IAU 2015 resolution B3
 constexpr double eclipse_step_s = 15.0;
 constexpr double eclipse_error_s = 1e-3;

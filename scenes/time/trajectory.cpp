@@ -18,7 +18,6 @@ using base::Error;
 
 constexpr double span_slack_s = 1.0;  // tolerance of STOP_TIME against the last state
 constexpr double farthest_m = 1e9;
-constexpr double equator_m = 6378137.0, pole_m = 6356752.3;
 constexpr double lowest_unit2 = 0.9996;  // 1 km below the ground: frames differ in their pole
 constexpr double least_turning = 1e-6;   // sine of the angle between position and velocity
 constexpr int most_degree = 31;
@@ -259,8 +258,8 @@ class OemReader {
     const auto& n = row.numbers;
     const State state{1e3 * Vec3(n[0], n[1], n[2]), 1e3 * Vec3(n[3], n[4], n[5])};
     const double distance_m = glm::length(state.position_m);
-    // Of the WGS84 ellipsoid; z is the pole to a fraction of a degree in all frames.
-    const Vec3 unit = state.position_m / Vec3(equator_m, equator_m, pole_m);
+    // z is the pole to a fraction of a degree in all frames.
+    const Vec3 unit = state.position_m / earth_equator_m / Vec3(1.0, 1.0, 1.0 - earth_flattening);
     if (!(glm::dot(unit, unit) > lowest_unit2 && distance_m < farthest_m)) {
       throw Error(Blame::Input, line.where,
                   fmt::format("a state {:.6g} km from the Earth's centre", distance_m / 1e3),

@@ -77,7 +77,7 @@ Answer answer(const std::vector<Trade>& trades, const std::vector<Trade>& settin
               const std::vector<Worth>& worth, double wanted, double resolution) {
   Answer result;
   result.wanted = wanted;
-  result.told = resolution <= wanted;
+  result.is_resolved = resolution <= wanted;
   result.best = cheapest_within(trades, wanted);
   for (const Worth& method : worth) {
     Answer::OfMethod of{method.method, cheapest_of(trades, method.method, wanted),

@@ -63,7 +63,7 @@ struct SeriesLaw {
 // The cheapest measured settings for a wanted error, by CPU seconds.
 struct Answer {
   double wanted = 0.0;
-  bool told = true;                 // whether the reference resolves this error
+  bool is_resolved = true;          // whether the reference resolves this error
   std::optional<std::size_t> best;  // index of the measured point; empty: not reached
   struct OfMethod {
     std::string method;

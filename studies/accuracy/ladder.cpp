@@ -154,16 +154,16 @@ std::vector<AccuracyStep> accuracy_ladder(const scenes::Scene& scene,
 
 std::vector<std::string> replaced_keys(const scenes::Quality& quality) {
   std::vector<std::string> keys;
-  const auto look = [&keys](const char* key, bool set) {
+  const auto add_if = [&keys](const char* key, bool set) {
     if (set) keys.emplace_back(key);
   };
-  look("error", quality.error.has_value());
-  look("patch_edge", quality.patch_edge_m.has_value());
-  look("max_patches", quality.max_patches.has_value());
-  look("refine", quality.refine.has_value());
-  look("form_factor_rays", quality.form_factor_rays.has_value());
-  look("gather_rays", quality.gather_rays.has_value());
-  look("camera_samples", quality.camera_samples.has_value());
+  add_if("error", quality.error.has_value());
+  add_if("patch_edge", quality.patch_edge_m.has_value());
+  add_if("max_patches", quality.max_patches.has_value());
+  add_if("refine", quality.refine.has_value());
+  add_if("form_factor_rays", quality.form_factor_rays.has_value());
+  add_if("gather_rays", quality.gather_rays.has_value());
+  add_if("camera_samples", quality.camera_samples.has_value());
   return keys;
 }
 

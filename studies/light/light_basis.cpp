@@ -247,14 +247,14 @@ void LightBasis::weigh_earth(const SkyPlace& place, const Rgb& factor,
         squares += std::pow(base::luminance(value) - base::luminance(mean), 2);
       }
       // The extremes are at edges and at the limb.
-      const auto look = [&](const Vec3& direction) {
+      const auto add_extreme = [&](const Vec3& direction) {
         const Rgb value = factor * radiance(direction) / earth_unit_;
         largest = std::max(largest, std::abs(base::luminance(value) - base::luminance(mean)));
       };
       cells.visit_lattice(cell, cell_side, [&](const Vec3& direction) {
-        look(direction);
+        add_extreme(direction);
         const Vec3 seen_ground = onto_disc(*sky.earth, direction);
-        if (cells.cell_of(seen_ground) == cell) look(seen_ground);
+        if (cells.cell_of(seen_ground) == cell) add_extreme(seen_ground);
       });
       const std::size_t group = groups_.earth + cell;
       weights.weight[group] = mean;

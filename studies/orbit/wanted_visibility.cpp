@@ -14,9 +14,9 @@ std::vector<double> detections(const LightBasis& basis, const BasisView& view, s
   const CameraSight sight = measure_sight(view.plan, radiance, cctv, options);
   std::vector<double> found;
   for (const Sight& target : sight.targets) {
-    const bool told = target.probability && target.verdict != Verdict::Hidden &&
-                      !(target.black_back >= options.most_black_back);
-    found.push_back(told ? target.probability->detect : 0.0);
+    const bool is_judged = target.probability && target.verdict != Verdict::Hidden &&
+                           !(target.black_back >= options.most_black_back);
+    found.push_back(is_judged ? target.probability->detect : 0.0);
   }
   return found;
 }

@@ -161,6 +161,66 @@ degrade::PlaneMap screen_spread(const degrade::Setup& setup, int columns, int ro
   return {mean_spread(setup.monitor, columns), mean_spread(setup.monitor, rows)};
 }
 
+namespace {
+
+// Planes of the signal where noise enters it.
+struct NoiseInputs {
+  Picture exposed, full;  // at the sensor; before saturation
+};
+
+// Whether the stage changes the noise-free signal of one frame up to the screen.
+bool maps_noise_free(const degrade::Stage& stage) {
+  return stage.merge == nullptr && !stage.is(degrade::Kind::Noise) &&
+         stage.carry != degrade::carry_lag && stage.carry != degrade::carry_spread &&
+         stage.carry != degrade::carry_room_light;
+}
+
+// amplified: the filter is behind the amplifier's noise.
+void take_filter(CctvSignal& line, const degrade::PlaneMap& filter, bool amplified) {
+  (amplified ? line.bandwidth : line.blur_along) = without_far_taps(filter.along);
+  if (!amplified) line.blur_across = without_far_taps(filter.across);
+}
+
+std::vector<double> luminance_shares(std::size_t planes) {
+  if (planes != 3) return {1.0};
+  return {base::luminance({1.0, 0.0, 0.0}), base::luminance({0.0, 1.0, 0.0}),
+          base::luminance({0.0, 0.0, 1.0})};
+}
+
+// Noise of the line from the light on `picture`, the noise-free signal, and from the amplifier.
+void add_noise(CctvSignal& line, Picture picture, const NoiseInputs& inputs,
+               const degrade::Setup& setup, const degrade::StageContext& at) {
+  const auto runs = [&](auto* carry) { return is_on(carry, setup, &line.report); };
+  const double lag = runs(degrade::carry_lag) ? degrade::lag_of(at) : 0.0;
+  line.lag_per_field = runs(degrade::carry_lag) ? setup.camera.lag : 0.0;
+  const AxisMap along = squared(chained(line.blur_along, line.bandwidth)),
+                across = squared(line.blur_across), read = squared(line.bandwidth);
+  if (runs(degrade::carry_read_noise)) {
+    line.amplifier = line.report.noise.a;
+    line.amplifier_pattern = line.report.noise.black_pattern;
+  }
+  const std::size_t columns = static_cast<std::size_t>(line.columns);
+  line.amplifier_at_line.resize(columns);
+  for (std::size_t x = 0; x < columns; ++x) {
+    double sum = 0.0;
+    for (std::size_t k = read.start[x]; k < read.start[x + 1]; ++k) sum += read.weight[k];
+    line.amplifier_at_line[x] = static_cast<float>(sum);
+  }
+  for (std::size_t p = 0; p < picture.planes.size(); ++p) {
+    SignalPlane plane;
+    plane.signal = std::move(picture.planes[p]);
+    carry_light_noise(line, plane, inputs.exposed.planes[p], along, across,
+                      (1.0 - lag) / (1.0 + lag), runs(degrade::carry_signal_noise));
+    if (runs(degrade::carry_saturation)) {
+      saturate_noise(plane, inputs.full.planes[p], setup.camera.saturation,
+                     sum_of_squares(line.blur_along) * sum_of_squares(line.blur_across));
+    }
+    line.planes.push_back(std::move(plane));
+  }
+}
+
+}  // namespace
+
 CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup) {
   const degrade::CctvCamera& camera = setup.camera;
   CctvSignal line;
@@ -176,12 +236,12 @@ CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup
   const auto is_on = [&](auto* carry) { return studies::is_on(carry, setup, &report); };
   // A picture of one resel, on which only the point maps act.
   degrade::Moments maps = degrade::still({1, 1, {{0.0F}}});
-  Picture exposed, full;
+  NoiseInputs inputs;
   bool at_maps = false, amplified = false, on_screen = false;
   for (const degrade::Stage& stage : degrade::stages()) {
     const bool sensor = stage.part == degrade::Part::Sensor;
-    if (sensor && exposed.planes.empty()) {
-      exposed = picture;
+    if (sensor && inputs.exposed.planes.empty()) {
+      inputs.exposed = picture;
       line.blur_along = line.bandwidth = nothing(picture.columns);
       line.blur_across = nothing(picture.rows);
     }
@@ -194,21 +254,11 @@ CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup
       line.line = maps.pending;
       on_screen = true;
     }
-    if (stage.carry == degrade::carry_bloom) full = picture;  // and saturation after it
+    if (stage.carry == degrade::carry_bloom) inputs.full = picture;  // and saturation after it
     if (!degrade::runs(stage, setup, &report)) continue;
-    if (stage.merge != nullptr || stage.is(degrade::Kind::Noise)) continue;
-    if (stage.carry == degrade::carry_lag || stage.carry == degrade::carry_spread ||
-        stage.carry == degrade::carry_room_light) {
-      continue;
-    }
+    if (!maps_noise_free(stage)) continue;
     if (sensor && stage.law.filter != nullptr) {
-      const degrade::PlaneMap filter = stage.law.filter(picture, at);
-      if (amplified) {
-        line.bandwidth = without_far_taps(filter.along);
-      } else {
-        line.blur_along = without_far_taps(filter.along);
-        line.blur_across = without_far_taps(filter.across);
-      }
+      take_filter(line, stage.law.filter(picture, at), amplified);
     }
     if (at_maps) {
       maps = carry(std::move(maps), stage, at);
@@ -225,37 +275,8 @@ CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup
   if (is_on(degrade::carry_room_light))
     line.room_luminance = degrade::room_luminance(setup.monitor);
 
-  const double lag = is_on(degrade::carry_lag) ? degrade::lag_of(at) : 0.0;
-  line.lag_per_field = is_on(degrade::carry_lag) ? camera.lag : 0.0;
-  const AxisMap along = squared(chained(line.blur_along, line.bandwidth)),
-                across = squared(line.blur_across), read = squared(line.bandwidth);
-  if (is_on(degrade::carry_read_noise)) {
-    line.amplifier = report.noise.a;
-    line.amplifier_pattern = report.noise.black_pattern;
-  }
-  const std::size_t columns = static_cast<std::size_t>(line.columns);
-  line.amplifier_at_line.resize(columns);
-  for (std::size_t x = 0; x < columns; ++x) {
-    double sum = 0.0;
-    for (std::size_t k = read.start[x]; k < read.start[x + 1]; ++k) sum += read.weight[k];
-    line.amplifier_at_line[x] = static_cast<float>(sum);
-  }
-  line.luminance_share = {1.0};
-  if (picture.planes.size() == 3) {
-    line.luminance_share = {base::luminance({1.0, 0.0, 0.0}), base::luminance({0.0, 1.0, 0.0}),
-                            base::luminance({0.0, 0.0, 1.0})};
-  }
-  for (std::size_t p = 0; p < picture.planes.size(); ++p) {
-    SignalPlane plane;
-    plane.signal = std::move(picture.planes[p]);
-    carry_light_noise(line, plane, exposed.planes[p], along, across, (1.0 - lag) / (1.0 + lag),
-                      is_on(degrade::carry_signal_noise));
-    if (is_on(degrade::carry_saturation)) {
-      saturate_noise(plane, full.planes[p], camera.saturation,
-                     sum_of_squares(line.blur_along) * sum_of_squares(line.blur_across));
-    }
-    line.planes.push_back(std::move(plane));
-  }
+  line.luminance_share = luminance_shares(picture.planes.size());
+  add_noise(line, std::move(picture), inputs, setup, at);
   line.screen_luminance = mean_screen_luminance(line);
   return line;
 }

@@ -69,8 +69,8 @@ ShownMoments moments_at(const CctvSignal& line, const std::vector<std::uint32_t>
     for (std::size_t i = 0; i < resels.size(); ++i) {
       const std::uint32_t resel = resels[i];
       const Scatter s = scatter(plane, resel);
-      const float told = v.slope[i] * v.slope[i] * s.frame;
-      const float beyond = std::max(0.0F, v.variance[i] - told);
+      const float linear = v.slope[i] * v.slope[i] * s.frame;
+      const float beyond = std::max(0.0F, v.variance[i] - linear);
       shown.mean[resel] += share * v.mean[i];
       shown.variance[resel] += share * share * v.variance[i];
       shown.variance_in_time[resel] +=

@@ -217,15 +217,16 @@ std::vector<Change> without_limits_of_the_eye(const WhyNotInputs& in, std::size_
                                      100.0 * std::abs(*sight.weber))
                        : "too little contrast for the eye's threshold";
   contrast.without = none ? "on a black ground" : "to an eye without one";
-  const auto tell = [&](const std::optional<double>& weber, const std::optional<double>& least) {
+  const auto add_figures = [&](const std::optional<double>& weber,
+                               const std::optional<double>& least) {
     if (none || !weber || !least) return;
     contrast.text +=
         fmt::format(" ({:.1f} % against {:.1f} %)", 100.0 * std::abs(*weber), 100.0 * *least);
   };
   if (sight.monitor) {
-    tell(sight.monitor->weber, sight.monitor->threshold);
+    add_figures(sight.monitor->weber, sight.monitor->threshold);
   } else if (sight.eye) {
-    tell(sight.eye->weber, sight.eye->threshold);
+    add_figures(sight.eye->weber, sight.eye->threshold);
   }
   contrast.apply = [none](Scenario& s) {
     s.options.eye.threshold_factor = 0.0;

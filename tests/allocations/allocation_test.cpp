@@ -120,7 +120,7 @@ TEST_F(Allocations, EffectsWithNothingToDoTakeNone) {
   for (const auto& [name, change] : culled) EXPECT_EQ(bytes_of(change), usual_) << name;
 }
 
-// The count sees what an effect takes when it runs.
+// The count includes the memory of effects that run.
 TEST_F(Allocations, EffectsThatRunTakeSome) {
   EXPECT_GT(bytes_of([](View& view) {
               view.scene.sun.emplace();

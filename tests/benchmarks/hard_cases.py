@@ -75,7 +75,7 @@ def main():
         known = [f"{100 * x:.2g} %" if x is not None else "none" for x in (error["estimate"], error["bound_95"])]
         says = "; ".join(line.strip() for line in said.splitlines() if "limit" in line or "needs" in line or "not captured" in line)
         print(f"| {name} | {known[0]} | {known[1]} | {100 * truth.error:.2g} ± "
-              f"{100 * truth.doubt / max(2 * truth.error, 1e-9):.1g} % | {seconds:.3g} | {paths:.3g}, {100 * noise:.2g} % | {says} |",
+              f"{100 * truth.squared_error_std / max(2 * truth.error, 1e-9):.1g} % | {seconds:.3g} | {paths:.3g}, {100 * noise:.2g} % | {says} |",
               flush=True)
 
 

@@ -86,7 +86,7 @@ def rows(call, scene, camera):
                            "--error", asked, "--seed", call.seed, "-q", "--json", "-o", picture)
         error = json.loads(out)["error"]
         truth = error_truth.compare(error_truth.picture(picture)[0], first, second, counts, more)
-        unsure = truth.doubt / (2 * truth.error) if truth.error > 0 else math.sqrt(truth.doubt)
+        unsure = truth.squared_error_std / (2 * truth.error) if truth.error > 0 else math.sqrt(truth.squared_error_std)
         paths = path_seconds * (of_paths / max(truth.error, 1e-6))**2
         yield (f"| {scene.stem} {camera} | {100 * asked:g} % | {100 * error['estimate']:.1f}, {100 * error['bound_95']:.1f} % | "
                f"{100 * truth.error:.1f} ± {100 * unsure:.1f} % | {100 * truth.bias:+.2f} % | {seconds:.1f} | {paths:.0f} | "

@@ -29,7 +29,7 @@ class Truth(unittest.TestCase):
         found = error_truth.compare([v + off for v in truth], noisy(truth, sigma, 1), noisy(truth, sigma, 2))
         spread = math.sqrt((sigma**4 + 2 * off**2 * sigma**2) / number)
         self.assertLess(abs(found.error**2 - off**2), 4 * spread)
-        self.assertAlmostEqual(found.doubt, spread, delta=0.05 * spread)
+        self.assertAlmostEqual(found.squared_error_std, spread, delta=0.05 * spread)
         self.assertAlmostEqual(found.of_references, spread, delta=0.05 * spread)
         self.assertAlmostEqual(found.bias, off, delta=4 * sigma / math.sqrt(2 * number))
 
@@ -41,7 +41,7 @@ class Truth(unittest.TestCase):
         found = error_truth.compare([1.0 + off] * number, first, second, None, more)
         spread = math.sqrt((4 * off**2 * sigma**2 / k + 2 * sigma**4 / (k * (k - 1))) / number)
         self.assertLess(abs(found.error**2 - off**2), 4 * spread)
-        self.assertAlmostEqual(found.doubt, spread, delta=0.05 * spread)
+        self.assertAlmostEqual(found.squared_error_std, spread, delta=0.05 * spread)
         self.assertAlmostEqual(found.of_references, spread, delta=0.05 * spread)
 
     def test_what_pixels_differ_by_is_no_doubt_of_these(self):
@@ -54,7 +54,7 @@ class Truth(unittest.TestCase):
         found = error_truth.compare(light, first, second, None, more)
         spread = math.sqrt((0.4 * off**2 * sigma**2 / k + 2 * sigma**4 / (k * (k - 1))) / number)
         self.assertAlmostEqual(found.of_references, spread, delta=0.05 * spread)
-        self.assertAlmostEqual(found.doubt, math.sqrt(0.09 * off**4 / number + spread**2), delta=0.05 * found.doubt)
+        self.assertAlmostEqual(found.squared_error_std, math.sqrt(0.09 * off**4 / number + spread**2), delta=0.05 * found.squared_error_std)
         self.assertLess(abs(found.error**2 - off**2 / 10), 4 * spread)
 
     def test_an_outlier_is_no_certainty(self):

@@ -35,7 +35,7 @@ class HardCases(program.Case):
         truth = error_truth.compare(light, *self.references(hard, paths, size))
         error = report["error"]
         # The standard error of the square includes the references' noise.
-        self.assertLess(truth.error**2, error["bound_95"]**2 + 4 * truth.doubt, (truth.error, error))
+        self.assertLess(truth.error**2, error["bound_95"]**2 + 4 * truth.squared_error_std, (truth.error, error))
         self.assertLess(error["estimate"], error["bound_95"])
         return truth, error
 
@@ -67,10 +67,10 @@ class HardCases(program.Case):
             report, light = self.picture(hard, "--size", "16x16", "--seed", seed)
             truth, error = error_truth.compare(light, *references), report["error"]
             # The standard error of the square includes the references' noise.
-            passed += truth.error**2 >= error["bound_95"]**2 + 4 * truth.doubt
+            passed += truth.error**2 >= error["bound_95"]**2 + 4 * truth.squared_error_std
             self.assertLess(error["estimate"], error["bound_95"])
             # Light leaks along walls and floors must stay far below the light through the hole.
-            self.assertLess(abs(truth.bias), 0.25 + 4 * math.sqrt(truth.doubt))
+            self.assertLess(abs(truth.bias), 0.25 + 4 * math.sqrt(truth.squared_error_std))
         self.assertLess(passed, 5)
 
     def test_a_room_lit_through_a_pinhole_reaches_its_error(self):
@@ -159,7 +159,7 @@ class Edges(program.Case):
         settings = [word for key in keys for word in ("--set", f"quality.{key}")]
         stated = self.json(*view, *settings, "-o", "bay.exr")["error"]["estimate"]
         truth = error_truth.compare(error_truth.picture(self.folder / "bay.exr")[0], *paths)
-        self.assertLess(abs(truth.error**2 - stated**2), 4 * truth.doubt)
+        self.assertLess(abs(truth.error**2 - stated**2), 4 * truth.squared_error_std)
 
 
 if __name__ == "__main__":

@@ -61,17 +61,18 @@ class Comparison {
   }
 
   void expect(const Plane& variance) const {
-    double chi2 = 0.0, ratio = 0.0, doubt = 0.0;
+    double chi2 = 0.0, ratio = 0.0, variance_of_ratio = 0.0;
     const double count = static_cast<double>(places_.size());
     for (const Place& place : places_) {
       const double predicted = static_cast<double>(variance[place.pixel]);
       chi2 += place.first * place.first * frames / predicted;
       ratio += place.second / predicted / count;
-      doubt += (place.fourth - place.second * place.second) / frames / (predicted * predicted);
+      variance_of_ratio +=
+          (place.fourth - place.second * place.second) / frames / (predicted * predicted);
     }
     EXPECT_NEAR(chi2, count, 4.0 * std::sqrt(2.0 * count));
-    EXPECT_NEAR(ratio, 1.0, 4.0 * std::sqrt(doubt) / count);
-    EXPECT_LT(4.0 * std::sqrt(doubt) / count, 0.1);
+    EXPECT_NEAR(ratio, 1.0, 4.0 * std::sqrt(variance_of_ratio) / count);
+    EXPECT_LT(4.0 * std::sqrt(variance_of_ratio) / count, 0.1);
   }
 
  private:

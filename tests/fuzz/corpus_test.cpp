@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What fuzzing has found, read once more by every build: nothing but base::Error may come of it.
+// Every build reads the files that fuzzing has found: only base::Error may result.
 #include <gtest/gtest.h>
 
 #include <fstream>

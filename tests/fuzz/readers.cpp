@@ -65,8 +65,7 @@ void solution(const fs::path& file) {
       radiosity::read_solution(file, {scene, groups, options, EARTHSHINE_PROGRAM_VERSION}));
 }
 
-// The page is made of it, too: what is read wrongly shows there. Pictures are named in it that are
-// not there, and then it is refused.
+// Also draws the page, where errors of reading show. A page that names missing pictures is refused.
 void study_results(const fs::path& file) {
   const auto study = app::read_results(file.filename(), app::read_json(file, ""));
   app::write_report(file.parent_path(), study, {.plain = true, .quiet = true});

@@ -16,9 +16,8 @@ struct Reader {
 
 [[nodiscard]] std::span<const Reader> readers();
 
-// Gives the bytes to the reader as a file of their own in a folder where nothing else is. A reader
-// may refuse them with base::Error; whatever else leaves here is a fault. At most 1 GiB of memory
-// may be asked for.
+// Writes the bytes as the only file of a folder and calls the reader. A reader may refuse them with
+// base::Error; any other exception is a fault. At most 1 GiB of memory may be requested.
 void read_bytes(const Reader& reader, std::string_view bytes);
 
 }  // namespace earthshine::fuzz

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a solve keeps of the pose before changes no byte of the solution.
+// Results that a solve reuses from the previous pose change no byte of the solution.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -119,8 +119,8 @@ def of_studies(program, out):
             if file.suffix in (".csv", ".png"):
                 yield f"study {study[0]} {file.relative_to(folder)}", of_file(file)
         for path in sorted(folder.glob("*.json")):
-            for costs, told in by_costs(json.loads(path.read_text())).items():
-                yield f"study {study[0]} {path.name}{costs}", digest(plain(told))
+            for costs, stated_study in by_costs(json.loads(path.read_text())).items():
+                yield f"study {study[0]} {path.name}{costs}", digest(plain(stated_study))
         # Their names contain the build that wrote them.
         for number, found in enumerate(sorted(of_file(file) for file in folder.rglob("points/*.exr"))):
             yield f"study {study[0]} points {number}", found
@@ -129,8 +129,8 @@ def of_studies(program, out):
             made, stated = page.read_bytes(), by_costs(json.loads(file.read_text()))
             run(program, "report", folder)
             yield f"study {study[0]} drawn anew", str(made == page.read_bytes())
-            for costs, told in stated.items():
-                file.write_text(json.dumps(timeless(told)))
+            for costs, stated_study in stated.items():
+                file.write_text(json.dumps(timeless(stated_study)))
                 run(program, "report", folder)
                 yield f"study {study[0]} report.html{costs}", of_file(page)
 

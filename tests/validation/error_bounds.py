@@ -128,7 +128,7 @@ class Bench:
             seen = with_neighbours(json.loads((folder / "seen").read_text()), error_truth.columns(folder / "1.exr"))
             counts = [float(thing >= 0 and not source) for thing, source in zip(things, seen)]
             found = [error_truth.compare(light, first, second, counts, others) for light, _ in judged]
-            if count >= MOST_REFERENCES or all(error_tables.doubt(one, bound) <= SURE for one, (_, bound) in zip(found, judged)):
+            if count >= MOST_REFERENCES or all(error_tables.relative_uncertainty(one, bound) <= SURE for one, (_, bound) in zip(found, judged)):
                 return found
             count *= 2
 

@@ -37,10 +37,10 @@ class Row:
         return unsure(self.truth)
 
     @property
-    def tells(self):
+    def is_decisive(self):
         """Whether the references are accurate enough to test a single bound. Not for solutions: the
         noise of all points of a patch is equal."""
-        return self.kind == "solve" or doubt(self.truth, self.bound) <= UNSURE
+        return self.kind == "solve" or relative_uncertainty(self.truth, self.bound) <= UNSURE
 
     @property
     def by_error(self):
@@ -60,7 +60,7 @@ def unsure(truth):
     return min(root, truth.of_references / (2 * truth.error)) if truth.error > 0 else root
 
 
-def doubt(truth, bound):
+def relative_uncertainty(truth, bound):
     """The same, relative to the larger of the true error and its bound."""
     return unsure(truth) / max(bound, truth.error, LEAST)
 
@@ -81,7 +81,7 @@ def table(rows):
     for row in rows:
         parts = ", ".join(f"{key.replace('_', ' ')} {percent(value)}" for key, value in row.parts.items()
                           if value > 0.2 * row.estimate)  # 96 % of the square or more
-        mark = ("" if row.within else " **outside**") + ("" if row.tells else " (?)")
+        mark = ("" if row.within else " **outside**") + ("" if row.is_decisive else " (?)")
         unsure_by = "" if row.kind == "solve" else f" ± {percent(row.unsure)}"
         ratio = f"{row.ratio:.2f}" if row.truth.error >= LEAST else ""
         print(f"| {row.scene} | {row.asked} | {row.patches} | {percent(row.estimate)} | {percent(row.bound)} | {parts} | "
@@ -132,7 +132,7 @@ def write(rows):
     """Prints all tables. Returns whether all rows together meet the requirements."""
     good = summaries(rows)
     reached(rows)
-    sure = [row for row in rows if row.tells]
+    sure = [row for row in rows if row.is_decisive]
     print(f"\n{len(rows) - len(sure)} of {len(rows)} rows are marked (?): the references' own noise leaves their true errors unsure. "
           f"Without them:")
     summaries(sure)

@@ -29,12 +29,12 @@ def columns(path):
 
 
 class Truth:
-    """error and bias: relative to `mean`. doubt: standard error of the squared error, with the
+    """error and bias: relative to `mean`. squared_error_std: standard error of the squared error, with the
     pixels as a sample of many. of_references: the part of this that is caused by the references'
     noise, the uncertainty for exactly these pixels."""
 
-    def __init__(self, error, doubt, of_references, bias, mean):
-        self.error, self.doubt, self.of_references, self.bias, self.mean = error, doubt, of_references, bias, mean
+    def __init__(self, error, squared_error_std, of_references, bias, mean):
+        self.error, self.squared_error_std, self.of_references, self.bias, self.mean = error, squared_error_std, of_references, bias, mean
 
 
 BRIGHT = 4.0  # times the mean, for error_weight (raytrace/frame/frame.h)

@@ -23,7 +23,7 @@ def closed(text, low, high, material):
     text.thing(material, shape="box", min=list(low), max=list(high), inward=True)
 
 
-def look(text, position, at, size=(32, 32), fov=60.0):
+def add_camera(text, position, at, size=(32, 32), fov=60.0):
     text.table("[[camera]]", name="A", position=list(position), look_at=list(at), fov_deg=fov, resolution=list(size))
 
 
@@ -39,7 +39,7 @@ def small_emitter():
     text = Text("small emitter")
     closed(text, (0, 0, 0), (4, 4, 3), text.material(diffuse=0.5))
     text.thing(text.material(diffuse=0.5, emit=1e6), **quad(2, 2.9, (1, 1, 0), (1.02, 1.02, 0), True))
-    look(text, (0.4, 0.4, 1.5), (3, 3, 1.2))
+    add_camera(text, (0.4, 0.4, 1.5), (3, 3, 1.2))
     return Hard("small emitter", "400 lm from 4 cm2", str(text), mean=400 / (80 * 0.5))
 
 
@@ -57,7 +57,7 @@ def sun_spot():
     for a, b in (((0, 0), (3, 4)), ((3.1, 0), (4, 4)), ((3, 0), (3.1, 3)), ((3, 3.1), (3.1, 4))):
         text.thing(paint, **quad(2, 3, (*a, 0), (*b, 0), True))
     text.table("[sun]", direction=[0.0, 0.0, 1.0], illuminance=100000.0)
-    look(text, (3.6, 3.6, 1.6), (0, 0, 1.4))
+    add_camera(text, (3.6, 3.6, 1.6), (0, 0, 1.4))
     return Hard("sun spot", "1 % of 1 m2 lights the room", str(text))
 
 
@@ -67,7 +67,7 @@ def wide_emitter():
     closed(text, (0, 0, 0), (2, 2, 0.5), text.material(diffuse=0.5))
     edge = math.sqrt(0.06 * 12)
     text.thing(text.material(diffuse=0.0, emit=1000.0), **quad(2, 0.45, (1, 1, 0), (1 + edge, 1 + edge, 0), True))
-    look(text, (0.1, 0.1, 0.25), (1.6, 1.6, 0.1))
+    add_camera(text, (0.1, 0.1, 0.25), (1.6, 1.6, 0.1))
     return Hard("carried emitter", "an emitter near the ceiling that gather rays must find", str(text))
 
 
@@ -81,7 +81,7 @@ def pinhole():
     for a, b in (((0, 0), (0.97, 2)), ((1.03, 0), (2, 2)), ((0.97, 0), (1.03, 0.97)), ((0.97, 1.03), (1.03, 2))):
         text.thing(sheet, **quad(0, 2, (0, *a), (0, *b)))
     text.light(type="point", position=[1.0, 0.5, 1.8], flux=2000.0)
-    look(text, (3.7, 0.3, 1.0), (2.1, 1.5, 0.8))
+    add_camera(text, (3.7, 0.3, 1.0), (2.1, 1.5, 0.8))
     return Hard("pinhole", "light comes through 36 cm2", str(text))
 
 
@@ -92,7 +92,7 @@ def baffle():
     closed(text, (0, 0, 0), (4, 4, 3), text.material(diffuse=0.6))
     text.thing(text.material(diffuse=0.6, two_sided=True), **quad(2, 2.5, (0.5, 0.5, 0), (3.5, 3.5, 0)))
     text.light(type="point", position=[2, 2, 2.7], flux=2000.0)
-    look(text, (0.3, 0.3, 1.2), (3, 3, 0.6))
+    add_camera(text, (0.3, 0.3, 1.2), (3, 3, 0.6))
     return Hard("baffle", "all light is indirect", str(text))
 
 
@@ -104,7 +104,7 @@ def shadowed_target():
     text.thing(text.material(diffuse=0.1, two_sided=True), **quad(2, 0.8, (-1.2, -1.2, 0), (1.2, 1.2, 0)))
     text.thing(text.material(diffuse=0.3), shape="box", min=[-0.2, -0.2, 0.0], max=[0.2, 0.2, 0.3], target=True)
     text.table("[sun]", direction=[0.0, 0.0, 1.0], illuminance=100000.0)
-    look(text, (3, -4, 0.7), (0, 0, 0.2), fov=40.0)
+    add_camera(text, (3, -4, 0.7), (0, 0, 0.2), fov=40.0)
     return Hard("shadowed target", "bright around, dark itself", str(text), target=f"o{text.names}")
 
 
@@ -115,7 +115,7 @@ def caustic():
     text.thing(text.material(diffuse=0.5), **quad(2, 0, (-2, -2, 0), (2, 2, 0)))
     text.thing(text.material(diffuse=0.0, mirror=0.9), shape="sphere", center=[0, 0, 1], radius=0.5)
     text.table("[sun]", direction=[1.0, 0.0, 1.0], illuminance=20000.0)
-    look(text, (2.5, -2.5, 1.5), (0, 0, 0.3), fov=50.0)
+    add_camera(text, (2.5, -2.5, 1.5), (0, 0, 0.3), fov=50.0)
     return Hard("caustic", "a mirror lights the floor", str(text))
 
 
@@ -124,7 +124,7 @@ def white_room():
     everywhere."""
     text = Text("white room")
     closed(text, (0, 0, 0), (2, 2, 2), text.material(diffuse=0.99, emit=1.0))
-    look(text, (0.3, 0.3, 1.0), (1.5, 1.8, 0.8))
+    add_camera(text, (0.3, 0.3, 1.0), (1.5, 1.8, 0.8))
     return Hard("white room", "a hundred reflections", str(text), mean=100.0, light=100 / math.pi)
 
 
@@ -134,7 +134,7 @@ def lit_white_room():
     text = Text("lit white room")
     closed(text, (0, 0, 0), (2, 2, 2), text.material(diffuse=0.99))
     text.light(type="point", position=[1.2, 1.2, 1.5], flux=100.0)
-    look(text, (0.3, 0.3, 1.0), (1.5, 1.8, 0.8))
+    add_camera(text, (0.3, 0.3, 1.0), (1.5, 1.8, 0.8))
     return Hard("lit white room", "a hundred reflections of a lamp", str(text), mean=100 / (24 * 0.01))
 
 
@@ -155,7 +155,7 @@ def lamp_at_a_wall():
                                                                           for x, z in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
             text.light(type="disk", center=[1.0, 1.9999, 1.2], normal=[0, -1, 0], radius=0.001,
                        flux=reflectance * flux * seen_sr / (4 * math.pi))
-        look(text, (0.3, 0.3, 1.0), (1.5, 1.0, 0.4))
+        add_camera(text, (0.3, 0.3, 1.0), (1.5, 1.0, 0.4))
         return str(text)
 
     return Hard("lamp at a wall", "half of the light in a spot of 4 mm", room(False), mean=flux / (24 * (1 - reflectance)),
@@ -175,7 +175,7 @@ def corridor():
         for a, b in (((0, 1.6), (2, 2)), ((0, 0), (door, 1.6)), ((door + 0.8, 0), (2, 1.6))):
             text.thing(sheet, **quad(0, 2 * k, (0, *a), (0, *b)))
     text.light(type="point", position=[1.0, 1.0, 1.8], flux=2000.0)
-    look(text, (7.7, 0.3, 1.2), (6.2, 1.6, 0.8))
+    add_camera(text, (7.7, 0.3, 1.2), (6.2, 1.6, 0.8))
     return Hard("corridor", "light through three doors", str(text))
 
 
@@ -184,7 +184,7 @@ def black_picture():
     text = Text("black picture")
     closed(text, (0, 0, 0), (2, 2, 2), text.material(diffuse=1e-4))
     text.light(type="point", position=[1.2, 1.2, 1.9], flux=1e-6)
-    look(text, (0.3, 0.3, 1.0), (1.5, 1.8, 0.5))
+    add_camera(text, (0.3, 0.3, 1.0), (1.5, 1.8, 0.5))
     return Hard("black picture", "next to nothing to see", str(text))
 
 
@@ -193,7 +193,7 @@ def one_pixel():
     closed(text, (0, 0, 0), (2, 2, 2), text.material(diffuse=0.6))
     text.light(type="rectangle", center=[1.5, 1.5, 1.95], edge_u=[0.3, 0, 0], edge_v=[0, -0.3, 0], flux=1000.0)
     text.thing(text.material(diffuse=0.3), shape="box", min=[0.8, 0.8, 0.0], max=[1.2, 1.2, 0.7])
-    look(text, (0.3, 0.3, 1.5), (1.2, 1.2, 0.2), size=(1, 1), fov=30.0)
+    add_camera(text, (0.3, 0.3, 1.5), (1.2, 1.2, 0.2), size=(1, 1), fov=30.0)
     return Hard("one pixel", "no neighbours, no crowd of pixels", str(text))
 
 
@@ -201,14 +201,14 @@ def sky_alone():
     text = Text("sky alone")
     text.thing(text.material(diffuse=0.6), **quad(2, 0, (-1, -1, 0), (1, 1, 0)))
     text.table("[sun]", direction=[0.3, 0.1, 1.0], illuminance=100000.0)
-    look(text, (0, 0, 1), (0.2, 5, 6))
+    add_camera(text, (0, 0, 1), (0.2, 5, 6))
     return Hard("sky alone", "no surface in the picture", str(text), light=0.0)
 
 
 def no_light():
     text = Text("no light")
     closed(text, (0, 0, 0), (2, 2, 2), text.material(diffuse=0.6))
-    look(text, (0.3, 0.3, 1.0), (1.5, 1.8, 0.5))
+    add_camera(text, (0.3, 0.3, 1.0), (1.5, 1.8, 0.5))
     return Hard("no light", "nothing shines", str(text), mean=0.0, light=0.0)
 
 

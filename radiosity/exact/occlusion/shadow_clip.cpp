@@ -192,16 +192,16 @@ double ShadowClip::visible_area_share() const {
 
 // An edge parallel to `along`, as a point of the perpendicular plane: `across` in units of the
 // receiver's side, `towards` the height above the receiver in metres.
-void ShadowKinks::collect(const Vec3& from, const Vec3& to, const Lookout& lookout,
+void ShadowKinks::collect(const Vec3& from, const Vec3& to, const Projection& projection,
                           std::vector<Point>& points) {
   const Vec3 edge = to - from;
-  const double off = glm::length(glm::cross(edge, lookout.along));
-  if (off > parallel * glm::length(edge) * lookout.along_m) return;
-  const Vec3 at = from - lookout.corner;
-  const Point made{glm::dot(at, lookout.across), glm::dot(at, lookout.normal)};
+  const double off = glm::length(glm::cross(edge, projection.along));
+  if (off > parallel * glm::length(edge) * projection.along_m) return;
+  const Vec3 at = from - projection.corner;
+  const Point made{glm::dot(at, projection.across), glm::dot(at, projection.normal)};
   for (const Point& point : points) {
     if (std::abs(point.across - made.across) < same &&
-        std::abs(point.towards - made.towards) < same * lookout.side_m) {
+        std::abs(point.towards - made.towards) < same * projection.side_m) {
       return;
     }
   }
@@ -211,29 +211,29 @@ void ShadowKinks::collect(const Vec3& from, const Vec3& to, const Lookout& looko
 void ShadowKinks::find(const Vec3& corner, const Vec3& side, const Vec3& along,
                        const TargetFrame& frame, const ConvexPolygon& target,
                        std::span<const Blocker> blockers, std::vector<double>& kinks) {
-  Lookout lookout{corner,
-                  along,
-                  glm::normalize(glm::cross(side, along)),
-                  Vec3(0.0),
-                  glm::length(side),
-                  glm::length(along)};
+  Projection projection{corner,
+                        along,
+                        glm::normalize(glm::cross(side, along)),
+                        Vec3(0.0),
+                        glm::length(side),
+                        glm::length(along)};
   // In the plane spanned by side and normal, projected along `along`.
-  const Vec3 across = glm::cross(along, lookout.normal);
-  lookout.across = across / glm::dot(across, side);
+  const Vec3 across = glm::cross(along, projection.normal);
+  projection.across = across / glm::dot(across, side);
   of_target_.clear();
   of_blockers_.clear();
   for (int k = 0; k < target.count; ++k) {
-    collect(target[k], target.next(k), lookout, of_target_);
+    collect(target[k], target.next(k), projection, of_target_);
   }
   for (const Blocker& blocker : blockers) {
     if (blocker.whole_body) {
       if (blocker.body->edges.size() > most_edges) continue;
       for (const ConvexBody::Edge& edge : blocker.body->edges) {
-        collect(frame.point(edge.from), frame.point(edge.to), lookout, of_blockers_);
+        collect(frame.point(edge.from), frame.point(edge.to), projection, of_blockers_);
       }
     } else {
       for (int k = 0; k < blocker.shape.count; ++k) {
-        collect(blocker.shape[k], blocker.shape.next(k), lookout, of_blockers_);
+        collect(blocker.shape[k], blocker.shape.next(k), projection, of_blockers_);
       }
     }
   }

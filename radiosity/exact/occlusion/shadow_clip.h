@@ -106,7 +106,7 @@ class ShadowKinks {
     double across, towards;
   };
 
-  struct Lookout {
+  struct Projection {
     Vec3 corner, along, normal, across;
     double side_m, along_m;
   };
@@ -114,7 +114,7 @@ class ShadowKinks {
   void find(const Vec3& corner, const Vec3& side, const Vec3& along, const TargetFrame& frame,
             const ConvexPolygon& target, std::span<const Blocker> blockers,
             std::vector<double>& kinks);
-  static void collect(const Vec3& from, const Vec3& to, const Lookout& lookout,
+  static void collect(const Vec3& from, const Vec3& to, const Projection& projection,
                       std::vector<Point>& points);
   [[nodiscard]] static double split(const std::vector<double>& kinks, double low, double high);
 

@@ -3,14 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/units.h"
 #include "scenes/mesh/gltf/file.h"
-#include "scenes/mesh/gltf/rules.h"
+#include "scenes/mesh/gltf/model.h"
 #include "scenes/text/message_text.h"
+#include "scenes/text/table_reader.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -72,12 +76,83 @@ std::string with_text(std::string_view bytes, bool binary, std::size_t old_lengt
   return made;
 }
 
-const GltfRule* rule_for(std::string_view path) {
-  for (const GltfRule& rule : gltf_rules::all) {
-    const bool any = rule.path.front() == '*';
-    if (any ? path.ends_with(rule.path.substr(1)) : path == rule.path) return &rule;
+enum class Kind { Number, Whole, Word, Truth, Table, Tables };
+
+struct Rule {
+  std::string_view keys;  // ends of the keys from the top, joined by '/', without list indices
+  Kind kind;
+  Range range = any_number;  // of each number
+  std::size_t count = 0;     // of numbers; 0: no list
+  std::string_view otherwise =
+      {};                       // instead of a number out of range, for the warning; empty: error
+  std::string_view words = {};  // the allowed ones of a Word
+};
+
+constexpr std::size_t any_count = SIZE_MAX;  // a list, or a table, of any length
+constexpr Range whole{0.0, 2147483647.0};    // tinygltf stores 32 bits
+constexpr Range length{-1e15, 1e15};
+constexpr std::string_view none = "taken as none", brought = "the nearest allowed is taken";
+
+// Values that change the picture or the memory used. tinygltf uses the default of an optional value
+// of the wrong type and drops primitives that are no tables; it checks required values itself.
+constexpr Rule rules[] = {
+    {"/primitives, /targets", Kind::Tables},
+    {"/pbrMetallicRoughness, Texture", Kind::Table},
+    {"/scene, /nodes/mesh, /nodes/camera, /nodes/skin, /primitives/indices, /primitives/material, "
+     "/skins/inverseBindMatrices, /textures/source, /textures/sampler, Texture/index",
+     Kind::Whole, whole, 0, none},
+    {"/buffers/byteLength, /bufferViews/buffer, /bufferViews/byteOffset, /bufferViews/byteLength, "
+     "/bufferViews/byteStride, /accessors/bufferView, /accessors/byteOffset, "
+     "/accessors/componentType, /accessors/count, /sparse/count, /sparse/indices/bufferView, "
+     "/sparse/indices/byteOffset, /sparse/indices/componentType, /sparse/values/bufferView, "
+     "/sparse/values/byteOffset, /images/bufferView, /primitives/mode, /targets/POSITION, "
+     "/targets/NORMAL, /texCoord, /KHR_lights_punctual/light, /samplers/wrapS, /samplers/wrapT, "
+     "/samplers/magFilter",
+     Kind::Whole, whole},
+    {"/scenes/nodes, /nodes/children, /skins/joints, /primitives/attributes, "
+     "/EXT_mesh_gpu_instancing/attributes",
+     Kind::Whole, whole, any_count},
+    {"/weights", Kind::Number, length, any_count},
+    {"/nodes/matrix", Kind::Number, length, 16},
+    {"/nodes/rotation", Kind::Number, length, 4},
+    {"/nodes/translation, /nodes/scale", Kind::Number, length, 3},
+    {"/KHR_texture_transform/offset, /KHR_texture_transform/scale", Kind::Number, length, 2},
+    {"/KHR_texture_transform/rotation", Kind::Number, length},
+    {"/doubleSided, /accessors/normalized", Kind::Truth},
+    {"/materials/alphaMode", Kind::Word, {}, 0, {}, "OPAQUE, MASK, BLEND"},
+    {"/alphaCutoff, /ior, /thicknessFactor", Kind::Number, at_least_zero},
+    {"/lights/range", Kind::Number},
+    {"/metallicFactor, /roughnessFactor, /glossinessFactor, /transmissionFactor, "
+     "/KHR_materials_specular/specularFactor",
+     Kind::Number, share, 0, brought},
+    {"/emissiveFactor, /lights/color, /KHR_materials_pbrSpecularGlossiness/specularFactor",
+     Kind::Number, share, 3, brought},
+    {"/baseColorFactor, /diffuseFactor", Kind::Number, share, 4, brought},
+    {"/specularColorFactor", Kind::Number, {0.0, 1e3}, 3, brought},
+    {"/emissiveStrength", Kind::Number, {0.0, 1e12}, 0, brought},
+    {"/lights/intensity", Kind::Number, light_strength, 0, brought},
+    {"/innerConeAngle, /outerConeAngle", Kind::Number, {0.0, base::pi / 2.0}, 0, brought},
+    {"/yfov", Kind::Number, {0.0, base::pi, true, true}, 0, "the camera is left out"},
+    {"/aspectRatio", Kind::Number, {0.0, 32.0, true, true}, 0, "1 is taken"}};
+
+// Whether `holds` is true of one of the words, which ", " separates.
+template <class Holds>
+bool any_word(std::string_view words, Holds holds) {
+  for (std::size_t at = 0; at < words.size();) {
+    const std::size_t end = std::min(words.find(", ", at), words.size());
+    if (holds(words.substr(at, end - at))) return true;
+    at = end + 2;
   }
-  return nullptr;
+  return false;
+}
+
+constexpr Rule extension{{}, Kind::Table};
+
+const Rule* rule_for(std::string_view keys) {
+  const auto* const found = std::find_if(std::begin(rules), std::end(rules), [&](const Rule& rule) {
+    return any_word(rule.keys, [&](std::string_view end) { return keys.ends_with(end); });
+  });
+  return found == std::end(rules) ? nullptr : found;
 }
 
 std::string described(const Json& value) {
@@ -87,22 +162,34 @@ std::string described(const Json& value) {
   return printable(text, 80);
 }
 
+std::string allowed(const Rule& rule) {
+  if (rule.kind == Kind::Table) return "a table, {...}";
+  if (rule.kind == Kind::Tables) return "a list of tables, [{...}, ...]";
+  if (rule.kind == Kind::Truth) return "true or false";
+  if (rule.kind == Kind::Word) return std::string(rule.words);
+  const std::string_view kind = rule.kind == Kind::Number ? "number" : "whole number";
+  const std::string which = rule.count == 0           ? fmt::format("a {}", kind)
+                            : rule.count == any_count ? fmt::format("{}s", kind)
+                                                      : fmt::format("{} {}s", rule.count, kind);
+  return which + ", " + to_string(rule.range);
+}
+
 class Values {
  public:
   explicit Values(const std::filesystem::path& path) : path_(path) {}
 
   // Checks a table and all tables below it. `keys` and `place` name its position:
-  // "materials/extensions" and "materials[2].extensions".
+  // "/materials/extensions" and "materials[2].extensions".
   void check(Json& table, const std::string& keys, const std::string& place) {
     for (auto entry = table.begin(); entry != table.end(); ++entry) {
       Json& value = entry.value();
-      if (entry.key() == "extras" || entry.key().empty() || value.is_null()) continue;
-      const std::string below = keys.empty() ? entry.key() : keys + "/" + entry.key();
+      if (entry.key() == "extras" || value.is_null()) continue;
+      const bool is_extension = keys.ends_with("/extensions");
+      if (is_extension && !is_read_extension(entry.key())) continue;
+      const std::string below = keys + "/" + entry.key();
       const std::string here = place.empty() ? entry.key() : place + "." + entry.key();
-      const GltfRule* rule = rule_for(below);
-      if (rule != nullptr) check_value(*rule, value, here);
-      const bool is_extension = keys == "extensions" || keys.ends_with("/extensions");
-      if (is_extension && rule == nullptr) continue;  // its contents are not checked
+      const Rule* rule = is_extension ? &extension : rule_for(below);
+      if (rule != nullptr) check_value(*rule, value, below, here);
       if (value.is_object()) check(value, below, here);
       for (std::size_t i = 0; value.is_array() && i < value.size(); ++i) {
         if (value[i].is_object()) check(value[i], below, fmt::format("{}[{}]", here, i));
@@ -110,153 +197,115 @@ class Values {
     }
   }
 
-  void check_top(Json& top) {
-    top_ = &top;
-    check(top, {}, {});
-  }
-
   [[nodiscard]] bool rewritten() const { return rewritten_; }
 
   void report(std::vector<std::string>& warnings) const {
-    for (const auto& [rule, note] : notes_) {
+    for (const auto& [keys, note] : notes_) {
       const std::string more =
           note.count > 1 ? fmt::format(" ({} more such)", note.count - 1) : std::string();
       warnings.push_back(fmt::format("{}: {}{}; allowed: {}; {}", path_.string(), note.first, more,
-                                     note.allowed, rule->otherwise));
+                                     allowed(*note.rule), note.rule->otherwise));
     }
   }
 
  private:
   struct Note {
-    std::string first, allowed;
+    const Rule* rule = nullptr;
+    std::string first;
     std::size_t count = 0;
   };
 
-  void check_value(const GltfRule& rule, Json& value, const std::string& place) {
-    switch (rule.kind) {
-      case GltfKind::Table:
-        if (!value.is_object()) refuse(rule, value, place);
-        return;
-      case GltfKind::Texture:
-        if (!value.is_object()) refuse(rule, value, place);
-        for (const GltfRule& entry : gltf_rules::of_texture) {
-          const auto found = value.find(entry.path);
-          if (found != value.end())
-            check_value(entry, *found, fmt::format("{}.{}", place, entry.path));
-        }
-        return;
-      case GltfKind::Tables:
-        if (!value.is_array()) refuse(rule, value, place);
-        for (const Json& entry : value) {
-          if (!entry.is_object()) refuse(rule, entry, place);
-        }
-        return;
-      case GltfKind::Truth:
-        if (!value.is_boolean()) refuse(rule, value, place);
-        return;
-      case GltfKind::Word:
-        if (!value.is_string() || !is_among(rule.words, value.get_ref<const std::string&>())) {
-          refuse(rule, value, place);
-        }
-        return;
-      case GltfKind::Number:
-      case GltfKind::Whole:
-      case GltfKind::Entry:
-        check_numbers(rule, value, place);
+  void check_value(const Rule& rule, Json& value, const std::string& keys,
+                   const std::string& place) {
+    bool is_kind = true;
+    if (rule.kind == Kind::Table) {
+      is_kind = value.is_object();
+    } else if (rule.kind == Kind::Tables) {
+      is_kind = value.is_array() && std::all_of(value.begin(), value.end(), [](const Json& entry) {
+                  return entry.is_object();
+                });
+    } else if (rule.kind == Kind::Truth) {
+      is_kind = value.is_boolean();
+    } else if (rule.kind == Kind::Word) {
+      is_kind = value.is_string() && any_word(rule.words, [&](std::string_view word) {
+                  return word == value.get_ref<const std::string&>();
+                });
+    } else if (rule.count == 0) {
+      check_number(rule, value, keys, place);
+    } else if (rule.count == any_count ? value.is_structured()
+                                       : value.is_array() && value.size() == rule.count) {
+      for (auto entry = value.begin(); entry != value.end(); ++entry) {
+        check_number(rule, entry.value(), keys,
+                     value.is_object() ? place + "." + entry.key()
+                                       : fmt::format("{}[{}]", place, entry - value.begin()));
+      }
+    } else {
+      is_kind = false;
     }
+    if (!is_kind) refuse(rule, value, place);
   }
 
-  void check_numbers(const GltfRule& rule, Json& value, const std::string& place) {
-    if (rule.count == 0) {
-      check_number(rule, value, place);
-      return;
-    }
-    const bool is_list = value.is_array() || (value.is_object() && rule.count == any_count);
-    if (!is_list || (rule.count != any_count && value.size() != rule.count)) {
-      refuse(rule, value, place);
-    }
-    for (auto entry = value.begin(); entry != value.end(); ++entry) {
-      check_number(rule, entry.value(),
-                   value.is_object() ? place + "." + entry.key()
-                                     : fmt::format("{}[{}]", place, entry - value.begin()));
-    }
-  }
-
-  void check_number(const GltfRule& rule, Json& value, const std::string& place) {
+  void check_number(const Rule& rule, Json& value, const std::string& keys,
+                    const std::string& place) {
     if (!value.is_number()) refuse(rule, value, place);
     const auto number = value.get<double>();
-    if (rule.kind != GltfKind::Number && value.is_number_float()) {
+    if (rule.kind == Kind::Whole && value.is_number_float()) {
       if (number != std::floor(number) || std::abs(number) > 1e15) refuse(rule, value, place);
       value = static_cast<std::int64_t>(number);
       rewritten_ = true;
     }
-    const bool is_listed =
-        rule.words.empty() || rule.kind == GltfKind::Entry || is_among(rule.words, value.dump());
     // pi / 2 rounded to a float exceeds pi / 2.
     constexpr double rounding = 1e-6;
-    const Range range = range_of(rule);
-    const bool is_in_range =
-        range.holds(number) || range.holds(number - rounding) || range.holds(number + rounding);
-    if (is_listed && is_in_range) return;
+    if (rule.range.holds(number) || rule.range.holds(number - rounding) ||
+        rule.range.holds(number + rounding)) {
+      return;
+    }
     if (rule.otherwise.empty()) refuse(rule, value, place);
-    const std::string found = described(value);
-    if (rule.otherwise == gltf_rules::none) {
+    Note& note = notes_[keys];
+    if (note.count++ == 0) {
+      note.rule = &rule;
+      note.first = fmt::format("{} is {}", place, described(value));
+    }
+    if (rule.otherwise == none) {
       value = -1;  // tinygltf's "none"; a truncated large number could be a valid index
       rewritten_ = true;
     }
-    Note& note = notes_[&rule];
-    if (note.count++ > 0) return;
-    note.first = fmt::format("{} is {}", place, found);
-    note.allowed = allowed(rule);
   }
 
-  [[nodiscard]] static bool is_among(std::string_view words, std::string_view word) {
-    for (std::size_t at = 0; at < words.size();) {
-      const std::size_t end = std::min(words.find(", ", at), words.size());
-      if (words.substr(at, end - at) == word) return true;
-      at = end + 2;
-    }
-    return false;
-  }
-
-  [[nodiscard]] Range range_of(const GltfRule& rule) const {
-    Range range = rule.range;
-    if (rule.kind == GltfKind::Entry) {
-      const auto list = top_->find(rule.words);
-      range.high = list == top_->end() ? -1.0 : static_cast<double>(list->size()) - 1.0;
-    }
-    return range;
-  }
-
-  [[nodiscard]] std::string allowed(const GltfRule& rule) const {
-    if (rule.kind == GltfKind::Table || rule.kind == GltfKind::Texture) return "a table, {...}";
-    if (rule.kind == GltfKind::Tables) return "a list of tables, [{...}, ...]";
-    if (rule.kind == GltfKind::Truth) return "true or false";
-    const Range range = range_of(rule);
-    if (rule.kind == GltfKind::Entry && range.high < 0.0) {
-      return fmt::format("none, as the file has no {}", rule.words);
-    }
-    if (rule.kind != GltfKind::Entry && !rule.words.empty()) return std::string(rule.words);
-    const std::string_view whole = rule.kind == GltfKind::Number ? "" : "whole ";
-    const std::string which = rule.count == 0 ? fmt::format("a {}number", whole)
-                              : rule.count == any_count
-                                  ? fmt::format("{}numbers", whole)
-                                  : fmt::format("{} {}numbers", rule.count, whole);
-    return which + ", " + to_string(range);
-  }
-
-  [[noreturn]] void refuse(const GltfRule& rule, const Json& value,
-                           const std::string& place) const {
+  [[noreturn]] void refuse(const Rule& rule, const Json& value, const std::string& place) const {
     throw Error(Blame::Input, base::Location{path_.string()},
                 fmt::format("{} is {}", place, described(value)), "allowed: " + allowed(rule),
                 "Write it as glTF 2.0 has it, or leave it out");
   }
 
   const std::filesystem::path& path_;
-  const Json* top_ = nullptr;
   bool rewritten_ = false;
-  std::map<const GltfRule*, Note> notes_;
+  std::map<std::string, Note> notes_;  // by the keys of the value
 };
+
+// tinygltf hands over the bytes of a picture in a buffer view without checking that they exist.
+void check_pictures(const Json& top, const std::filesystem::path& path) {
+  const Json missing = Json::object();
+  const auto number = [](const Json& table, const char* key) {
+    const auto found = table.find(key);
+    return found != table.end() && found->is_number() ? found->get<std::size_t>() : 0;
+  };
+  const auto entry = [&](const char* list, std::size_t index) -> const Json& {
+    const auto found = top.find(list);
+    const bool exists = found != top.end() && found->is_array() && index < found->size();
+    return exists && found->at(index).is_object() ? found->at(index) : missing;
+  };
+  const auto images = top.find("images");
+  for (std::size_t i = 0; images != top.end() && i < images->size(); ++i) {
+    if (!entry("images", i).contains("bufferView")) continue;
+    const Json& view = entry("bufferViews", number(entry("images", i), "bufferView"));
+    const std::size_t end = number(view, "byteOffset") + number(view, "byteLength");
+    const std::size_t held = number(entry("buffers", number(view, "buffer")), "byteLength");
+    if (end <= held) continue;
+    gltf_fail(path, fmt::format("images[{}] ends at byte {} of its buffer", i, end),
+              fmt::format("the buffer has {}", held));
+  }
+}
 
 }  // namespace
 
@@ -269,8 +318,9 @@ std::optional<std::string> check_gltf_text(std::string_view bytes,
   Json top = Json::parse(text.begin(), text.end(), nullptr, false);
   if (!top.is_object()) return std::nullopt;  // tinygltf reports the error
   Values values(path);
-  values.check_top(top);
+  values.check(top, {}, {});
   values.report(warnings);
+  check_pictures(top, path);
   if (!values.rewritten()) return std::nullopt;
   return with_text(bytes, binary, text.size(),
                    top.dump(-1, ' ', false, Json::error_handler_t::replace));

@@ -18,16 +18,6 @@ constexpr double strongest = 1e12;         // emission, cd/m^2
 constexpr double blurred_through = 0.1;    // roughness above which glass is not clear
 constexpr double largest_gltf_ior = 10.0;  // as for materials of a scene file
 
-// Extensions of materials that are read, or that do not change a still picture by default.
-constexpr std::string_view read_extensions[] = {"KHR_materials_emissive_strength",
-                                                "KHR_materials_ior",
-                                                "KHR_materials_specular",
-                                                "KHR_materials_pbrSpecularGlossiness",
-                                                "KHR_materials_transmission",
-                                                "KHR_materials_volume",
-                                                "KHR_materials_unlit",
-                                                "KHR_materials_variants"};
-
 // Common parameters of both glTF material models.
 struct Facets {
   Rgb base{1.0};    // of the diffuse light and of metals
@@ -58,8 +48,8 @@ void reflect(const Facets& facets, Material& material) {
   const double kept = std::clamp(peak / least_highlight - 1.0, 0.0, 1.0);
   material.diffuse =
       facets.base * (plain * (1.0 - taken * kept * in_lobe) + facets.metallic * lobe.diffuse);
-  // Diffuse part of rough facets, for dark materials without diffuse light of their own. For
-  // dielectrics (0.04) it is negligible.
+  // Diffuse part of rough facets, for dark materials without a diffuse part. It is negligible for
+  // dielectrics (0.04).
   constexpr double next_to_nothing = 0.04;
   const double counts = std::clamp(taken / next_to_nothing - 1.0, 0.0, 1.0);
   const Rgb in_diffuse = facets.base * (plain * taken * (1.0 - kept * in_lobe));
@@ -222,8 +212,7 @@ class Converter {
   void name_unused() {
     if (source_.normalTexture.index >= 0) lack("normal maps");
     for (const auto& [name, table] : source_.extensions) {
-      const auto* const end = std::end(read_extensions);
-      if (std::find(std::begin(read_extensions), end, name) == end) lack(name);
+      if (!is_read_extension(name) && name != "KHR_materials_variants") lack(name);
     }
   }
 

@@ -121,7 +121,6 @@ std::string one_line(std::string text) {
 
 constexpr std::string_view of_textures[] = {"KHR_texture_basisu", "EXT_texture_webp",
                                             "EXT_texture_avif"};
-// Extensions that are read.
 constexpr std::string_view known[] = {
     "KHR_mesh_quantization",      "KHR_lights_punctual",    "KHR_materials_emissive_strength",
     "KHR_materials_ior",          "KHR_materials_specular", "KHR_materials_pbrSpecularGlossiness",
@@ -278,6 +277,8 @@ GltfModel convert(tinygltf::Model&& source, FileAccess& files, std::vector<std::
 }
 
 }  // namespace
+
+bool is_read_extension(const std::string& name) { return among(name, known); }
 
 void gltf_fail(const std::filesystem::path& path, std::string_view found,
                std::string_view allowed) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A glTF file as read by tinygltf. Each value is validated (json.h), but indices may be out of
+// A glTF file as read by tinygltf. The values that are read are validated (json.h), but indices may be out of
 // range. Holds its materials, lamps and cameras in the scene's form.
 #pragma once
 
@@ -55,6 +55,9 @@ struct GltfModel {
 // Throws base::Error (Input) for the file.
 [[noreturn]] void gltf_fail(const std::filesystem::path& path, std::string_view found,
                             std::string_view allowed = {});
+
+// Extensions whose values are read.
+[[nodiscard]] bool is_read_extension(const std::string& name);
 
 // Reads buffers and pictures from the folders only. Materials: materials.h; lamps and cameras:
 // punctual.h.

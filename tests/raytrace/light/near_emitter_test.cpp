@@ -84,9 +84,9 @@ Found light_of(const scenes::Scene& scene, const scenes::Camera& camera) {
 
 void expect_same(const Found& found, const Found& wanted) {
   for (std::size_t way = 0; way < ways; ++way) {
-    const double doubt = std::hypot(found.standard_error[way], wanted.standard_error[way]);
-    EXPECT_NEAR(found.mean[way], wanted.mean[way], 4.0 * doubt) << way;
-    EXPECT_LT(4.0 * doubt, 0.05 * wanted.mean[way]) << way;
+    const double standard_error = std::hypot(found.standard_error[way], wanted.standard_error[way]);
+    EXPECT_NEAR(found.mean[way], wanted.mean[way], 4.0 * standard_error) << way;
+    EXPECT_LT(4.0 * standard_error, 0.05 * wanted.mean[way]) << way;
   }
 }
 

@@ -98,9 +98,9 @@ void expect_same_picture(const scenes::Scene& scene, const Mean& wanted) {
     for (const double factor : {1.0, 0.25}) {
       SCOPED_TRACE(testing::Message() << "denoising " << denoise << ", " << factor);
       const Mean found = solved.gathered(factor, denoise);
-      const double doubt = std::hypot(found.standard_error, wanted.standard_error);
-      EXPECT_NEAR(found.mean, wanted.mean, 4.0 * doubt);
-      EXPECT_LT(4.0 * doubt, 0.05 * wanted.mean);
+      const double standard_error = std::hypot(found.standard_error, wanted.standard_error);
+      EXPECT_NEAR(found.mean, wanted.mean, 4.0 * standard_error);
+      EXPECT_LT(4.0 * standard_error, 0.05 * wanted.mean);
     }
   }
 }

@@ -191,10 +191,10 @@ TEST(PathTracer, StatesTheErrorOfLightThatIsNotSeenStraightFromASource) {
     const double square = std::pow(weight * (double(a[p]) - double(b[p])) / mean, 2) / 2.0;
     squares += square / counting, spread += square * square / counting;
   }
-  const double doubt = std::sqrt((spread - squares * squares) / counting);
-  EXPECT_NEAR(std::pow(one.report.relative_noise, 2), squares, 4.0 * doubt);
-  EXPECT_LT(counting, 24.0 * 24.0);  // edges of the lamp are in view
-  EXPECT_LT(4.0 * doubt, squares);   // so that the law can fail
+  const double standard_error = std::sqrt((spread - squares * squares) / counting);
+  EXPECT_NEAR(std::pow(one.report.relative_noise, 2), squares, 4.0 * standard_error);
+  EXPECT_LT(counting, 24.0 * 24.0);          // edges of the lamp are in view
+  EXPECT_LT(4.0 * standard_error, squares);  // so that the law can fail
 }
 
 // A million paths take seconds: a stop must not wait for the last path of a pixel. With 512 paths

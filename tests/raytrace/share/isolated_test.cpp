@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Isolated gather points, and their noise from the halves of their own rounds.
+// Isolated gather points, and their noise from the halves of their rounds.
 #include "raytrace/share/isolated.h"
 
 #include <gtest/gtest.h>

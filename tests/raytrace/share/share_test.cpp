@@ -65,7 +65,7 @@ TEST(Share, WhatNoiseHidesIsNoMoreThanCoarserDetailsHold) {
   EXPECT_NEAR(shared.squared_error_with(3, 1.0), 101.0 * coarser, 1e-4);
 }
 
-// A signal from N = 8 details has the standard error sqrt(2 / 8) q, of which 0.7 is subtracted:
+// A signal from N = 8 details has the standard error sqrt(2 / 8) q; 0.7 times it is subtracted:
 // s' = 2 - 0.3 - 0.35 = 1.35 and c = 1.35 / 2.35 for s = 2, q = 1. Stein's term,
 // 4 (s + q) (1 - c)^2 / N, is added to the remaining error.
 TEST(Share, WhatFewDetailsSayIsDoubtedMore) {

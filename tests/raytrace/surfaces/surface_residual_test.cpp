@@ -154,7 +154,7 @@ TEST(SurfaceResidual, BringsBackASolutionThatIsTwiceAsBrightOrDark) {
     }
     const double mean = sum / tries;
     const double spread = std::sqrt(std::max(0.0, squares / tries - mean * mean) / (tries - 1));
-    // The solution has noise of its own rays; its mean is accurate to some per mille.
+    // The solution has the noise of its rays; its mean is accurate to some per mille.
     EXPECT_NEAR(mean, (1.0 - double(factor)) * right, 4.0 * spread + 0.005 * right) << factor;
   }
 }

@@ -124,8 +124,8 @@ TEST(Findings, TheReferenceLimitsWhatIsSaid) {
       measured("radiosity", series::error, 0.1, 1.0, 0.001, 0.001),
       measured("radiosity", series::error, 0.05, 2.0, 0.0, 0.0)};
   const Findings found = find_accuracy(points, {0.05, 0.01}, 0.03);
-  EXPECT_TRUE(found.answers[0].told);
-  EXPECT_FALSE(found.answers[1].told);
+  EXPECT_TRUE(found.answers[0].is_resolved);
+  EXPECT_FALSE(found.answers[1].is_resolved);
   EXPECT_EQ(found.front, (std::vector<std::size_t>{0}));  // the second is not measurably better
   EXPECT_FALSE(found.laws.front().law);
   EXPECT_EQ(found.worth.front().down_to, 0.03);

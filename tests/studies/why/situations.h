@@ -57,30 +57,30 @@ inline DiscPicture picture_of(const Situation& made, double light) {
   return picture;
 }
 
-struct Told {
+struct Answer {
   studies::CameraSight sight;
   studies::WhyNot why;
 };
 
-inline Told ask(const std::vector<PutIn>& causes) {
+inline Answer ask(const std::vector<PutIn>& causes) {
   Situation made;
   for (const PutIn& put_in : causes) put_in(made);
   const DiscPicture picture = picture_of(made, made.light), lit = picture_of(made, 1.0);
   for (studies::SourceOnTarget& source : made.sources) {
     if (source.off == "switched off") source.when_on = &lit.image;
   }
-  Told told;
-  told.sight = measure_sight(picture.plan, picture.image, made.cctv);
-  told.why = why_not({picture.scene,
-                      picture.camera,
-                      picture.plan,
-                      picture.image,
-                      made.cctv,
-                      told.sight,
-                      made.sun,
-                      {}},
-                     0, made.sources);
-  return told;
+  Answer answer;
+  answer.sight = measure_sight(picture.plan, picture.image, made.cctv);
+  answer.why = why_not({picture.scene,
+                        picture.camera,
+                        picture.plan,
+                        picture.image,
+                        made.cctv,
+                        answer.sight,
+                        made.sun,
+                        {}},
+                       0, made.sources);
+  return answer;
 }
 
 inline void dim(Situation& s, double light) { s.light *= light; }

@@ -69,21 +69,21 @@ TEST(WhySituations, LightIsSwitchedOnBeforeWhatElseIsTakenAway) {
 class OneCause : public testing::TestWithParam<Case> {};
 
 TEST(WhySituations, WithoutACauseTheTargetIsIdentified) {
-  const Told told = ask({});
-  EXPECT_EQ(told.sight.targets.front().verdict, Verdict::Identified);
-  EXPECT_EQ(told.why.text, "");
+  const Answer answer = ask({});
+  EXPECT_EQ(answer.sight.targets.front().verdict, Verdict::Identified);
+  EXPECT_EQ(answer.why.text, "");
 }
 
 TEST_P(OneCause, IsNamedFirst) {
-  const Told told = ask({GetParam().put_in});
-  EXPECT_NE(told.sight.targets.front().verdict, Verdict::Identified);
-  ASSERT_FALSE(told.why.reasons.empty());
-  EXPECT_EQ(word_of(told.why.reasons.front().cause), GetParam().cause) << told.why.text;
-  EXPECT_TRUE(names(told.why, GetParam())) << told.why.text;
+  const Answer answer = ask({GetParam().put_in});
+  EXPECT_NE(answer.sight.targets.front().verdict, Verdict::Identified);
+  ASSERT_FALSE(answer.why.reasons.empty());
+  EXPECT_EQ(word_of(answer.why.reasons.front().cause), GetParam().cause) << answer.why.text;
+  EXPECT_TRUE(names(answer.why, GetParam())) << answer.why.text;
   // If the picture has a fault, neither the eye nor the target's size is named.
-  for (const Reason& reason : told.why.reasons) {
-    if (told.why.reasons.front().cause >= Cause::Contrast) break;
-    EXPECT_LT(reason.cause, Cause::Contrast) << told.why.text;
+  for (const Reason& reason : answer.why.reasons) {
+    if (answer.why.reasons.front().cause >= Cause::Contrast) break;
+    EXPECT_LT(reason.cause, Cause::Contrast) << answer.why.text;
   }
 }
 
@@ -100,9 +100,9 @@ class TwoCauses : public testing::TestWithParam<Pair> {};
 
 TEST_P(TwoCauses, AreBothNamed) {
   const auto& [one, other] = GetParam();
-  const Told told = ask({one.put_in, other.put_in});
-  EXPECT_TRUE(names(told.why, one)) << told.why.text;
-  EXPECT_TRUE(names(told.why, other)) << told.why.text;
+  const Answer answer = ask({one.put_in, other.put_in});
+  EXPECT_TRUE(names(answer.why, one)) << answer.why.text;
+  EXPECT_TRUE(names(answer.why, other)) << answer.why.text;
 }
 
 // Pairs of causes that do not exclude each other: a target out of view has no other reason, and an

@@ -37,7 +37,8 @@ struct Parts {
   std::string primitive = R"({"attributes": {"POSITION": 0}, "indices": 1, "material": 0})";
   std::string buffer = R"({"byteLength": 68, "uri": "a.bin"})";
   std::string views =
-      R"([{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 20}])";
+      R"([{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 20},
+          {"buffer": 0, "byteOffset": 48, "byteLength": 1073741824}])";
   std::string accessors =
       R"([{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
           {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"},
@@ -235,6 +236,11 @@ TEST_F(Gltf, WhatTheLibraryAcceptsAndShouldNotIsRefused) {
       {&Parts::views,
        R"([{"buffer": 0, "byteOffset": 18446744073709551612, "byteLength": 48}])",
        {"a.gltf"}},
+      // The buffer has 68 bytes, the picture ends at byte 48 + 2^30.
+      {&Parts::materials,
+       R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}], "textures": [{"source": 0}],
+           "images": [{"bufferView": 2, "mimeType": "image/png"}])",
+       {"images[0]", "1073741872", "68"}},
       {&Parts::accessors,
        positions + R"({"bufferView": 5, "componentType": 5123, "count": 6, "type": "SCALAR"}])",
        {"invalid bufferView"}},
