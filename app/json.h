@@ -32,7 +32,8 @@ inline constexpr int deepest_json = 64;
 // Contents of a file of at most 1 GiB. Throws base::Error: (Input) for invalid JSON, with the byte,
 // or for deeper nesting; `advice` is the remedy.
 [[nodiscard]] Json read_json(const std::filesystem::path& path, const std::string& advice);
-// A file written by this program; discarded (nlohmann) if it is missing or broken.
+// Reads a file written by this program. Returns nlohmann's `discarded` value if it is missing or
+// broken.
 [[nodiscard]] Json json_in(const std::filesystem::path& path);
 
 // A number, or null.

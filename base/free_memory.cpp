@@ -138,8 +138,8 @@ std::uint64_t resident_bytes() {
   return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-// Free memory by measure(). First returns the allocator's unused memory, which is at most the resident
-// memory; not if the resident memory is an eighth of the free memory or less.
+// Free memory by measure(). First returns the allocator's unused memory, which is at most the
+// resident memory; not if the resident memory is an eighth of the free memory or less.
 template <class Measure>
 Bytes left_for_use(const Measure& measure) {
   const Bytes left = measure();

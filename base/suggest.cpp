@@ -33,6 +33,7 @@ const std::vector<std::vector<std::string>>& synonyms() {
       {"quiet", "silent"},
       {"light", "lamp", "lights", "lamps"},
       {"object", "body", "part", "group"},
+      {"space", "sky", "zenith", "stars"},
   };
   return all;
 }
@@ -127,7 +128,15 @@ std::string nearest_word(std::string_view word, std::span<const std::string> can
   found = first([&](const std::string& candidate) {
     return wrong.size() > 2 && bare(candidate).starts_with(wrong);
   });
-  return found.empty() ? has(wrong) : found;
+  if (found.empty()) found = has(wrong);
+  if (!found.empty()) return found;
+  // A slip of the keys in a longer word of the table: "positon".
+  for (const std::vector<std::string>& words : synonyms()) {
+    for (const std::string& one : words) {
+      if (one.size() > 5 && edit_distance(wrong, one) == 1) return nearest_word(one, candidates);
+    }
+  }
+  return {};
 }
 
 }  // namespace earthshine::base

@@ -17,8 +17,8 @@ namespace earthshine::base {
 struct Grid {
   int columns = 0, rows = 0;
 };
-// A picture of `channels` bytes a pixel, sRGB encoded, on another grid over the same area: each pixel
-// is the mean of the linear signal over its own area.
+// A picture of `channels` bytes a pixel, sRGB encoded, on another grid over the same area: each
+// pixel is the mean of the linear signal over its own area.
 [[nodiscard]] std::vector<std::uint8_t> resized_srgb(const std::vector<std::uint8_t>& bytes,
                                                      std::size_t channels, const Grid& from,
                                                      const Grid& to);

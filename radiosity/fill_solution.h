@@ -9,7 +9,7 @@
 
 namespace earthshine::radiosity {
 
-// Per own row of the factors and column, unless stated otherwise.
+// One value per row of this rank's form factors and per column, unless stated otherwise.
 struct PatchLight {
   std::vector<double> reflectance;                           // reflectances(): three a row
   std::vector<double> emitted, direct, indirect, radiosity;  // exitances(); lx, lx, lm/m^2

@@ -13,7 +13,7 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr double share_per_round = 0.5;  // of the squared error, in the patches divided per round
+constexpr double share_per_round = 0.5;  // of the squared error: a round divides these patches
 constexpr std::size_t growth_between_solves = 4;
 constexpr int fewest_rays = 64;
 

@@ -42,7 +42,8 @@ inline constexpr double planned_share = 0.873;
 static_assert(planned_share < stop_fraction_of_fine);  // or rounds would not end
 // Study conditions, each a sum of the picture's layers: those whose squared error is more than so
 // many times too large get no samples of their own, and all samples together cost at most so many
-// times those for the sum of all layers. More finishes more conditions at the terminators, at their price.
+// times those for the sum of all layers. More finishes more conditions at the terminators, at their
+// price.
 inline constexpr double most_gain_for_sums = 4.0, most_growth_for_sums = 1.5;
 // The rounds for the sum of all layers end at this share of their wanted error: a condition's
 // picture shows only some of the lights, and its relative error is larger.
@@ -136,8 +137,8 @@ inline constexpr double edge_for_eye = 0.02;
 // Luminance below which contrasts do not count, over the picture's mean.
 inline constexpr double dimmest_share = 0.05;
 // Stated deviation of a pixel, relative to its luminance, from which on it gets more samples after
-// the error is reached, in so many rounds, each for at most that share of the cost so far. A smaller
-// deviation costs more, a larger one leaves single dark or bright pixels.
+// the error is reached, in so many rounds, each for at most that share of the cost so far. A
+// smaller deviation costs more, a larger one leaves single dark or bright pixels.
 inline constexpr double visible_deviation = 0.5, speck_cost = 0.05;
 inline constexpr std::uint32_t speck_rounds = 2;
 // Least number of pixels with one sample count for a common error estimate; with fewer, all pixels
@@ -228,7 +229,7 @@ inline constexpr double noise_share = 0.25, source_share = 1.0 / 3.0;
 inline constexpr double few_samples = 4.0;
 // Least light of a listed spot in a pixel, over the wanted error times the mean luminance.
 inline constexpr double least_of_spot = 0.01;
-// Coverage of a pixel from which on it needs no samples for spots.
+// A pixel covered at least this much needs no samples for spots.
 inline constexpr double most_coverage = 0.999;
 // Most samples of one pixel; of the picture, the larger of a total and a number per pixel.
 inline constexpr double most_for_one = 65536.0;

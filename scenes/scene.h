@@ -167,7 +167,7 @@ struct Lamp {
   Motion motion;                                 // turns about its position
   Rgb illuminance_lx{0.0};                       // distant: on an unoccluded plane that faces it
   std::string joint;                             // that it hangs on; empty: none
-  std::string object;                            // whose mesh file has it; empty: the scene file
+  std::string object;                            // that has it in its mesh file; empty: none
 
   [[nodiscard]] bool is_distant() const { return kind == LampKind::Distant; }
   // 0 without light; in the unit of the lamp's kind.

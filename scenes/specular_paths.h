@@ -14,7 +14,7 @@
 namespace earthshine::scenes {
 
 inline constexpr std::uint32_t no_mirror = 0xFFFFFFFFU;
-inline constexpr int most_panes = 256;  // that one ray passes; beyond, no light is left
+inline constexpr int most_panes = 256;  // per ray; more block all light
 
 // One side of all surfaces that reflect in one plane. A source appears at its mirror image, within
 // the mirror's extent.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pages of the console, of its live preview and of `view` without their data, from console/ by the build: no
-// library, no Node.js.
+// The pages of the console, of its live preview and of `view` without their data, from console/ by
+// the build: no library, no Node.js.
 #pragma once
 
 #include <string_view>

@@ -30,7 +30,7 @@ struct ConsoleCall {
   bool json = false, serve = false;
 };
 
-// Folder of finished pictures, so that a second call with other controls draws nothing.
+// Folder of finished pictures, which a second call reuses.
 std::string store_beside(const std::string& output) {
   fs::path path(output);
   return path.replace_extension(".layers").string();

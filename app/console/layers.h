@@ -45,8 +45,9 @@ inline constexpr std::size_t most_faders = 48;
 
 [[nodiscard]] std::vector<ConsoleLight> console_lights(const StudyPart& part);
 
-// Renders every camera of the part in turn; `folder` stores finished pictures (StudyFrames), `other`
-// may have more of them, from a study (empty: none). Throws base::Error (Work) if interrupted.
+// Renders every camera of the part in turn; `folder` stores finished pictures (StudyFrames),
+// `other` may have more of them, from a study (empty: none). Throws base::Error (Work) if
+// interrupted.
 void draw_views(const StudyPart& part, const std::string& folder, const std::string& other,
                 const Common& common, const std::function<void(ConsoleView)>& take);
 

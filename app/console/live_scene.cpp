@@ -345,7 +345,10 @@ void LiveScene::apply(const LiveRequest& request) {
     const std::size_t reads = scene_.reads;
     scene_.read();
     read_set_ = request.set;
-    if (scene_.reads > reads) movables_ = movables();  // the file may have changed
+    if (scene_.reads > reads) {  // the file may have changed
+      movables_ = movables();
+      light_.reset();
+    }
   }
   pose_set_ = request.set;
   cameras_ = scene_.loaded.scene.cameras;
@@ -363,9 +366,7 @@ void LiveScene::apply(const LiveRequest& request) {
 
 base::Image LiveScene::at_once(const RenderCall& call, const scenes::Camera& camera,
                                const Size& size, Json& head) {
-  const bool same_light = light_ && light_->solved && light_set_ == pose_set_ &&
-                          (light_reads_ == scene_.reads || light_structures_ == scene_.structures);
-  if (same_light) {
+  if (light_ && light_->solved && light_set_ == pose_set_) {
     head["kind"] = "patches";
     return raytrace::preview(scene_.loaded.world(*scene_.query), light_->solution,
                              raytrace::make_camera_model(camera, size.columns, size.rows));
@@ -390,8 +391,6 @@ base::Image LiveScene::sampled(RenderCall& call, const scenes::Camera& camera, J
   if (Interrupt::asked()) return {};
   light_ = light;
   light_set_ = read_set_;
-  light_reads_ = scene_.reads;
-  light_structures_ = scene_.structures;
   const RenderContext context{call, common_, scene_.loaded, *scene_.query, light};
   Drawn drawn = draw_picture(context, camera, times);
   head["kind"] = "samples";

@@ -42,9 +42,10 @@ class LiveScene {
 
   // Cameras, and what can be moved, as the scene was at the start: for the page.
   [[nodiscard]] const Json& description() const { return description_; }
-  // A head as JSON, its length in four bytes (little-endian) before it, and planes of 32-bit floats:
-  // R, G and B; with level 0 also the object and the depth, m along the camera's axis, of each pixel
-  // of the size in the request. No value if a newer request came meanwhile. Throws base::Error.
+  // A head as JSON, its length in four bytes (little-endian) before it, and planes of 32-bit
+  // floats: R, G and B; with level 0 also the object and the depth, m along the camera's axis, of
+  // each pixel of the size in the request. No value if a newer request came meanwhile. Throws
+  // base::Error.
   [[nodiscard]] std::optional<std::string> draw(const LiveRequest& request);
 
  private:
@@ -77,9 +78,8 @@ class LiveScene {
   std::vector<scenes::Camera> cameras_;  // of this pose
   std::vector<Movable> movables_;
   Json description_;
-  std::optional<Solved> light_;  // the latest, of `light_set_`
+  std::optional<Solved> light_;  // the latest, of `light_set_` and the files as they are read
   Set light_set_;
-  std::size_t light_reads_ = 0, light_structures_ = 0;
   std::mutex turn_;
   std::atomic<std::uint64_t> newest_ = 0;
 };

@@ -25,8 +25,8 @@ struct PageParts {
 
 class ConsolePage {
  public:
-  // set: changes of the scene's keys. layers_folder: folder of the layers' EXR files, for the commands that the page shows; empty:
-  // none.
+  // set: changes of the scene's keys. layers_folder: folder of the layers' EXR files, for the
+  // commands that the page shows; empty: none.
   ConsolePage(const StudyPart& part, const std::vector<std::string>& set, std::string layers_folder,
               const Common& common);
 

@@ -15,6 +15,7 @@
 #include "app/call/render_call.h"
 #include "app/cctv/cctv.h"
 #include "app/console.h"
+#include "app/dataset/folder.h"
 #include "app/dataset/labels.h"
 #include "app/dataset/recipe.h"
 #include "app/json.h"
@@ -69,41 +70,6 @@ Numbers numbers_of(const DatasetCall& call, std::size_t count) {
   return numbers;
 }
 
-// What reads and writes a data set's folder.
-class Folder {
- public:
-  explicit Folder(fs::path path) : path_(std::move(path)) {
-    for (const char* room : {"models", "images", "train/000000/rgb", "train/000000/depth",
-                             "train/000000/mask", "train/000000/mask_visib"}) {
-      fs::path folder = path_;
-      make_folder(folder);
-      for (const fs::path& part : fs::path(room)) make_folder(folder /= part);
-    }
-  }
-  [[nodiscard]] fs::path labels(std::size_t image) const {
-    return path_ / "images" / fmt::format("{:06}.json", image);
-  }
-  [[nodiscard]] fs::path layers(std::size_t image) const {
-    return path_ / "images" / fmt::format("{:06}.exr", image);
-  }
-  [[nodiscard]] fs::path bop(const char* room, std::size_t image) const {
-    return path_ / "train/000000" / room / fmt::format("{:06}.png", image);
-  }
-  [[nodiscard]] fs::path mask(const char* room, std::size_t image, std::size_t target) const {
-    return path_ / "train/000000" / room / fmt::format("{:06}_{:06}.png", image, target);
-  }
-  // scene_camera, scene_gt, scene_gt_info, annotations.
-  [[nodiscard]] std::vector<fs::path> lists() const {
-    const fs::path bop = path_ / "train/000000";
-    return {bop / "scene_camera.json", bop / "scene_gt.json", bop / "scene_gt_info.json",
-            path_ / "annotations.json"};
-  }
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 class DataSet {
  public:
   DataSet(const DatasetCall& call, const Common& common)
@@ -120,12 +86,9 @@ class DataSet {
                         "Set seed in " + recipe_.path.string());
     }
     model_joints_ = joints_of_targets(scene);
-    key_ = {{"build", build_id()}};
-    const fs::path here = fs::absolute(recipe_.path).parent_path();
-    for (const fs::path& file : inputs) {
-      const fs::path name = fs::absolute(file).lexically_relative(here);
-      key_[name.generic_string()] = digest_of_file(file);
-    }
+    refuse_varied_originals(scene);
+    key_ = digests_of(inputs);
+    key_["build"] = build_id();
     camera_ = static_cast<std::size_t>(wanted_cameras(recipe_.camera.name.empty()
                                                           ? std::vector<std::string>{}
                                                           : std::vector{recipe_.camera.name},
@@ -139,16 +102,29 @@ class DataSet {
   [[nodiscard]] bool is_done(std::size_t image) const {
     return !labels(image).is_null() && has_pictures(image);
   }
+  // Whether the finished picture has its error.
+  [[nodiscard]] bool reached(std::size_t image) const { return labels(image)["reached"]; }
   // Removes the lists over all images, which a new image makes wrong.
   void drop_lists() const {
     for (const fs::path& list : folder_.lists()) fs::remove(list);
   }
-  // Returns whether the picture has its error.
-  bool make(std::size_t image);
+  void make(std::size_t image);
   // Writes the lists over all images; false where images are missing.
   bool finish() const;
 
  private:
+  [[nodiscard]] fs::path here() const { return fs::absolute(recipe_.path).parent_path(); }
+  // By their names beside the recipe.
+  [[nodiscard]] Json digests_of(const Files& files) const {
+    Json digests = Json::object();
+    for (const fs::path& file : files) {
+      const fs::path name = fs::absolute(file).lexically_relative(here());
+      digests[name.generic_string()] = digest_of_file(file);
+    }
+    return digests;
+  }
+  // An instance has the shape of its original, which models/ have.
+  void refuse_varied_originals(const scenes::Scene& scene) const;
   [[nodiscard]] bool has_pictures(std::size_t image) const {
     std::vector<fs::path> files = {folder_.layers(image), folder_.bop("rgb", image),
                                    folder_.bop("depth", image)};
@@ -177,6 +153,10 @@ class DataSet {
     if (!fs::is_regular_file(folder_.labels(image))) return {};
     Json known = json_in(folder_.labels(image));
     if (!known.is_object() || !known.contains("key") || known["key"] != key_) return {};
+    for (const auto& [name, digest] : known["files"].items()) {
+      const fs::path file = here() / name;
+      if (!fs::is_regular_file(file) || Json(digest_of_file(file)) != digest) return {};
+    }
     return known;
   }
   [[nodiscard]] std::vector<std::uint32_t> targets_in(const scenes::Scene& scene) const;
@@ -214,6 +194,29 @@ std::vector<std::uint32_t> DataSet::targets_in(const scenes::Scene& scene) const
     objects.push_back(static_cast<std::uint32_t>(found - scene.objects.begin()));
   }
   return objects;
+}
+
+// Keys of an object that its instances do not share.
+constexpr std::string_view no_shape[] = {"material", "translate", "rotate",    "scale",
+                                         "velocity", "spin",      "spin_about"};
+
+void DataSet::refuse_varied_originals(const scenes::Scene& scene) const {
+  for (const std::uint32_t target : targets_in(scene)) {
+    const auto& instance = scene.objects[target].instance;
+    if (!instance) continue;
+    const std::string& original = scene.objects[instance->object].name;
+    const std::string own = fmt::format("object.{}.", original);
+    for (const Varied& varied : recipe_.varied) {
+      if (!varied.key.starts_with(own)) continue;
+      const std::string key = varied.key.substr(own.size());
+      if (std::ranges::find(no_shape, key) != std::end(no_shape)) continue;
+      throw base::Error(
+          base::Blame::Input, recipe_.path.string(),
+          fmt::format("[[vary]] {} sets the shape of the original of the target {}",
+                      scenes::in_quotes(varied.key), scenes::in_quotes(scene.objects[target].name)),
+          "the shape of a target is that of its model", "Leave it out");
+    }
+  }
 }
 
 std::vector<scenes::Pose> DataSet::joints_of_targets(const scenes::Scene& scene) const {
@@ -328,11 +331,12 @@ std::vector<Masks> DataSet::write_masks(const std::vector<studies::TargetView>& 
   return masks;
 }
 
-bool DataSet::make(std::size_t image) {
+void DataSet::make(std::size_t image) {
   const Draw draw = draw_values(recipe_, image);
   Common common = common_;
   common.seed = draw.seed;
   LoadedScene loaded = check_scene(scenes::read_scene(recipe_.scene, draw.overrides));
+  refuse_inputs_in(folder_.path(), loaded.scene.files);
   const scenes::RayQuery query(loaded.scene);
   place_camera(loaded.scene, query, image);
   const scenes::Camera& camera = loaded.scene.cameras[camera_];
@@ -368,7 +372,7 @@ bool DataSet::make(std::size_t image) {
   base::write_exr(folder_.layers(image), picture, picture_header(context, camera, drawn));
 
   const raytrace::CameraModel model = raytrace::make_camera_model(camera, map.columns, map.rows);
-  Json record = {{"key", key_}, {"image", image}};
+  Json record = {{"key", key_}, {"files", digests_of(loaded.scene.files)}, {"image", image}};
   record["drawn"] = {{"set", draw.overrides},
                      {"camera",
                       {{"name", camera.name},
@@ -377,6 +381,7 @@ bool DataSet::make(std::size_t image) {
                        {"up", to_json(camera.up)}}},
                      {"seed", draw.seed}};
   if (draw.white_cd_m2) record["drawn"]["white_cd_m2"] = *draw.white_cd_m2;
+  record["reached"] = drawn.limit == raytrace::Limit::None;
   record["columns"] = map.columns;
   record["rows"] = map.rows;
   record["error"] = error_json(drawn, loaded.scene.quality.error)["estimate"];
@@ -389,7 +394,6 @@ bool DataSet::make(std::size_t image) {
                           views, masks));
   record["targets"] = sights_of(camera, picture, map, views, cctv);
   base::write_text(folder_.labels(image), dump_lines(record));
-  return drawn.limit == raytrace::Limit::None;
 }
 
 bool DataSet::finish() const {
@@ -397,8 +401,8 @@ bool DataSet::finish() const {
   Json coco = {
       {"images", Json::array()}, {"annotations", Json::array()}, {"categories", Json::array()}};
   for (std::size_t image = 0; image < recipe_.images; ++image) {
+    if (!is_done(image)) return false;
     const Json known = labels(image);
-    if (known.is_null()) return false;
     const std::string number = std::to_string(image);
     cameras[number] = known["scene_camera"];
     poses[number] = known["scene_gt"];
@@ -438,9 +442,11 @@ void run(const DatasetCall& call, const Common& common) {
     for (std::size_t k = 0; k < total; ++k) {
       report(k, total);
       const std::size_t image = numbers.first + k;
-      if (set.is_done(image)) continue;
-      set.drop_lists();
-      if (!set.make(image)) noisy.push_back(image);
+      if (!set.is_done(image)) {
+        set.drop_lists();
+        set.make(image);
+      }
+      if (!set.reached(image)) noisy.push_back(image);
     }
   } catch (const Interrupt::Left&) {
     throw base::Error(base::Blame::Work, "dataset", "interrupted", {},

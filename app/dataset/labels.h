@@ -51,8 +51,8 @@ struct LabelCall {
   std::vector<scenes::Pose> model_to_scene;     // of each target, m
   std::vector<studies::PixelsOutside> outside;  // of each target
 };
-// {"scene_camera", "scene_gt", "scene_gt_info", "annotations"} of the image; masks come in the order
-// of scene_gt, which lists all targets.
+// {"scene_camera", "scene_gt", "scene_gt_info", "annotations"} of the image; masks come in the
+// order of scene_gt, which lists all targets.
 [[nodiscard]] Json labels_of(const LabelCall& call, const std::vector<studies::TargetView>& views,
                              const std::vector<Masks>& masks);
 

@@ -43,7 +43,12 @@ void WarmScene::read() {
 
 void WarmScene::pose(const scenes::PoseChange& change) {
   const bool was_moved = shape_.empty();
-  if (!as_read_) as_read_ = loaded.scene;
+  if (!as_read_) {
+    as_read_ = loaded.scene;
+    as_read_->quality = quality;  // calls may have set their own
+    as_read_->warnings = warnings;
+  }
+  view_warnings_.clear();
   loaded.scene = scenes::posed_scene(*as_read_, change);
   if (!change.moves_surfaces() && !was_moved) return;
   query.emplace(loaded.scene);
@@ -58,7 +63,8 @@ void WarmScene::prepare(const RenderCall& call, const std::vector<const scenes::
   loaded.scene.warnings = warnings;
   decide_effects(loaded, wanted_effects(call, cameras));
   if (cameras.size() != 1) return check_input(loaded, *query, {cameras}, true, draws);
-  const auto known = view_warnings_.find(cameras.front()->name);
+  const View view(*cameras.front());
+  const auto known = view_warnings_.find(view);
   if (known != view_warnings_.end()) {
     loaded.scene.warnings.insert(loaded.scene.warnings.end(), known->second.begin(),
                                  known->second.end());
@@ -66,7 +72,7 @@ void WarmScene::prepare(const RenderCall& call, const std::vector<const scenes::
   }
   check_input(loaded, *query, {cameras}, true, draws);
   const auto own = loaded.scene.warnings.begin() + static_cast<std::ptrdiff_t>(warnings.size());
-  view_warnings_[cameras.front()->name] = {own, loaded.scene.warnings.end()};
+  view_warnings_[view] = {own, loaded.scene.warnings.end()};
 }
 
 const Solved& WarmScene::light_for(const RenderCall& call, const Common& common,

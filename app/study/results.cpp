@@ -289,13 +289,17 @@ std::vector<Timeline> timelines_of(const StudyResults& study) {
       const auto value = [&](Figure of) {
         return found == results.end() ? Number() : of(*found->second);
       };
+      // What remains visible of a hidden target has a chance of its own, which is not the target's.
+      const bool hidden =
+          found != results.end() && found->second->sight.verdict == studies::Verdict::Hidden;
+      const auto chance = [&](Figure of) { return hidden ? Number() : value(of); };
       line->utc.push_back(condition.utc);
       line->position_deg.push_back(condition.position_deg);
       line->time_s.push_back(condition.time_s);
       line->sun_share.push_back(condition.sun_share);
-      line->detect.push_back(value(chance_of<&Probability::detect>));
-      line->recognise.push_back(value(chance_of<&Probability::recognise>));
-      line->identify.push_back(value(chance_of<&Probability::identify>));
+      line->detect.push_back(chance(chance_of<&Probability::detect>));
+      line->recognise.push_back(chance(chance_of<&Probability::recognise>));
+      line->identify.push_back(chance(chance_of<&Probability::identify>));
       line->luminance.push_back(value(sight_of<&Sight::luminance>));
       line->weber.push_back(value(sight_of<&Sight::weber>));
       line->verdict.push_back(found == results.end() ? std::nullopt

@@ -31,8 +31,8 @@ Instant end_of_eclipses(const scenes::Mission& mission, Instant start) {
   return std::min(stop, start + longest_eclipse_span_s);
 }
 
-// Within the states. Segments that share a moment are one span, so that an eclipse at that moment is
-// one.
+// Within the states. Segments that share a moment are one span, so that an eclipse at that moment
+// is one.
 Json eclipses_of(const scenes::Scene& scene, const scenes::Mission& mission) {
   const Instant start = mission.has_span ? mission.time.start : mission.moment;
   const Instant stop = end_of_eclipses(mission, start);

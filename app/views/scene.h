@@ -30,7 +30,8 @@ struct StudyCamera {
 // Of pose, lens, size and CCTV.
 [[nodiscard]] std::string camera_digest(const StudyCamera& camera);
 
-// One scene, or one pose of a scene whose joints move. Not movable: its members refer to each other.
+// One scene, or one pose of a scene whose joints move. Not movable: its members refer to each
+// other.
 struct StudyPart {
   std::string id;         // "s0", "s1", ...; of a later pose of its joints "s0-p1", ...
   std::size_t scene = 0;  // its number in the study

@@ -21,7 +21,7 @@ struct ViewingConfiguration {
   std::vector<double> tai_s;          // of these (scenes::Instant), along time; else empty
   // Where Sun and Earth give least light: the smallest sufficient factor on the setting's lamps.
   std::optional<double> least_factor, darkest_deg;
-  bool tried_factors = false;  // false: all lamps of the setting are off
+  bool tried_factors = false;  // false: no lamp is on, or no target in view
 };
 
 template <class Fields>

@@ -21,8 +21,8 @@ inline constexpr int largest_picture_edge_px = 16384;
 // for another format, a broken or truncated file, or more than 16384 pixels on an edge.
 [[nodiscard]] Pixels read_pixels(std::string_view bytes, std::string_view named);
 
-// A grey PNG file's values over the largest one that its 8 or 16 bits store, from 0 to 1, in rows from
-// the top; no sRGB curve is applied. Throws base::Error (Input) for colours and alpha.
+// A grey PNG file's values over the largest one that its 8 or 16 bits store, from 0 to 1, in rows
+// from the top; no sRGB curve is applied. Throws base::Error (Input) for colours and alpha.
 struct GreyPixels {
   int width = 0;
   int height = 0;

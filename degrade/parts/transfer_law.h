@@ -62,7 +62,7 @@ struct Filter {
 struct LineNoise {
   // Variances of the settings, before any filter.
   double amplifier = 0.0, dark = 0.0;           // parts of a
-  double light = 0.0, share = 0.0;              // b; c, if it is new in each frame
+  double light = 0.0, share = 0.0;              // b; c, unless it is a fixed pattern
   double fixed_black = 0.0, fixed_share = 0.0;  // parts of a and c that are the same in every frame
   double lag = 1.0;                             // factor of the lag on the light's noise in time
   bool two_fields = false;                      // odd lines belong to another field

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What moved between two poses of a scene, as boxes around its places then and now: a ray that meets
-// none of them has the same hit in both poses.
+// What moved between two poses of a scene, as boxes around its places then and now: a ray that
+// meets none of them has the same hit in both poses.
 #pragma once
 
 #include <cstdint>

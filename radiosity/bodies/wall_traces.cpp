@@ -182,7 +182,7 @@ class WallFinder {
     std::vector<Piece> pieces;
     for (Trace& t : traces) {
       Vec3 front = t.front;
-      // Without a covered side the orientation is arbitrary.
+      // Only a body covers one side. Other traces get a canonical orientation.
       const bool turned = !t.of_body && (glm::dot(front, x) < -1e-9 ||
                                          (glm::dot(front, x) < 1e-9 && glm::dot(front, y) < 0.0));
       if (turned) {

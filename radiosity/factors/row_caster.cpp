@@ -135,9 +135,9 @@ bool RowCaster::restore(std::uint32_t patch, const PatchRays::Sender& first, Ban
   return true;
 }
 
-// Counts the patch's rays, except from points covered by the bodies `near`. stop_at_back: stops at the
-// first black back and returns false if bodies near the patch may be the cause, and lists them. A
-// patch that sees no back is not covered and costs nothing extra.
+// Counts the patch's rays, except from points covered by the bodies `near`. stop_at_back: stops at
+// the first black back and returns false if bodies near the patch may be the cause, and lists them.
+// A patch that sees no back is not covered and costs nothing extra.
 bool RowCaster::trace(std::uint32_t patch, PatchRays::Sender sender, bool stop_at_back,
                       std::vector<std::uint32_t>& near, Row& row, HitCounter& counter,
                       Band& band) const {

@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t block_edge_px = 32;
 
-// Light of a pixel by layer, before denoising. Points without samples count as their pixel's others.
+// Light of a pixel by layer, before denoising. Points without samples count as their pixel's
+// others.
 void undenoised_light(const PixelSums& sums, const GatherField& field, std::size_t pixel,
                       std::span<float> out) {
   const std::size_t layers = sums.image_layers;

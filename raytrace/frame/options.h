@@ -45,9 +45,9 @@ struct RenderOptions {
   bool per_light = false;
   // With per_light: pixels, ascending, of the regions in Frame::regions.
   std::vector<std::vector<std::uint32_t>> regions;
-  // With per_light and an `error`, and without a crop: weights of the layers' luminance in the sums that must have the
-  // error, in place of the sum of all layers. Sums far above it (tuning.h) get no samples of their
-  // own.
+  // With per_light and an `error`, and without a crop: weights of the layers' luminance in the sums
+  // that must have the error, in place of the sum of all layers. Sums far above it (tuning.h) get
+  // no samples of their own.
   std::vector<std::vector<double>> sums;
   std::vector<std::string> aovs;  // of aov_names()
   std::uint64_t seed = 1;

@@ -237,8 +237,8 @@ void PixelSums::pass(std::size_t pixel, base::Parcel& parcel) {
 
 namespace {
 
-// Samples that reduce the error of an edge with that contrast, relative to its brighter side, to
-// edge_for_eye (error_of_edge).
+// Samples for an edge of this contrast until its error, relative to the brighter side, is
+// edge_for_eye.
 std::uint32_t samples_for_edge(double contrast) {
   return std::bit_ceil(static_cast<std::uint32_t>(
       std::pow(error_of_edge / tuning::edge_for_eye * contrast, 4.0 / 3.0)));

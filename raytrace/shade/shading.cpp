@@ -239,7 +239,7 @@ void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
   const Vec3 origin = surface.lifted();
   const int count = depth == 0 ? tuning::lobe_rays : 1;
   for (int k = 0; k < count; ++k) {
-    // L = integral of L_in f cos: k_s times the mean of L_in by the samples' weights.
+    // L = integral of L_in f cos, estimated as k_s times the weighted mean of L_in.
     const double u = rng_.next(), v = rng_.next();
     const auto [direction, share] = surface.brdf.sample(scenes::Brdf::Term::Specular, u, v);
     if (share <= 0.0) continue;

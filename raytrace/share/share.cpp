@@ -140,8 +140,8 @@ class Sharer {
     });
   }
 
-  // Squares over the noise that is expected from the sample counts: of the values, the mean over
-  // the noise fields, and the resulting weight.
+  // Weight: 1 over the variance expected from the sample counts. Energy and NoiseSquare: weight
+  // times the squared value, and times the mean square of the noise fields.
   void take_squares(const Planes& values) {
     if (squares_.empty())
       squares_ = neighbours_.planes(all_ ? Scatter : Scatter + tuning::scatter_fields);

@@ -20,7 +20,8 @@ inline constexpr std::size_t parts_of_a_pass = 1000;
 // the wanted one, or a limit ends them: sample the residual on all patches, state the error,
 // correct the light (surface_light.h), divide the patches with most of the unevenness, and
 // distribute rays where noise is largest. Values in the scene's quality stay fixed. `progress` gets
-// the name of each stage; it may be empty. Its reports count parts of passes, the total as predicted.
+// the name of each stage; it may be empty. Its reports count parts of passes, the total as
+// predicted.
 [[nodiscard]] SteeredSolution reach_surfaces(const scenes::World& scene, const Wanted& wanted,
                                              std::uint64_t seed, const SolveListener& listen,
                                              const StageListener& progress = {});

@@ -31,7 +31,8 @@ class LightOnSurfaces {
 
   [[nodiscard]] bool is_spot(std::uint32_t patch) const { return light_.is_spot(patch); }
 
-  // On the root rank only, like lamp_rays() and gather_rays(). Luminance, over the open parts.
+  // Luminance, averaged over the open parts. On the root rank only, like lamp_rays() and
+  // gather_rays().
   [[nodiscard]] double mean_radiosity() const;
   [[nodiscard]] double mean_on_all_ranks() const;  // collective; on all ranks
   // Samples already in the light of a patch.

@@ -99,8 +99,8 @@ class SurfaceSampler {
 
   // which: patches; budget: for each of them. Entries of other patches stay empty. pass: number of
   // the independent set of samples. mean: of the radiosity, for error_weight(). `bodies` may cover
-  // points; null: none is covered. progress: gets the number of finished patches. receivers: the rank
-  // that gets the result; all ranks get `rays`.
+  // points; null: none is covered. progress: gets the number of finished patches. receivers: the
+  // rank that gets the result; all ranks get `rays`.
   [[nodiscard]] SurfaceSamples sample(const SurfaceLight& light,
                                       std::span<const std::uint32_t> which,
                                       std::span<const SampleBudget> budget, std::uint32_t pass,

@@ -40,4 +40,7 @@ export const fitPhone = () => {
   makeCards();
   narrow.addEventListener("change", makeCards);
   foldLongSections();
+  // Tables that are shown, or filled, later.
+  addEventListener("load", makeCards);
+  document.addEventListener("toggle", () => requestAnimationFrame(makeCards), true);
 };

@@ -87,7 +87,8 @@ class Tree {
     if (!order_.empty()) build(0, order_.size());
   }
 
-  // Calls visit(a, b) for pairs of different objects with overlapping boxes, until it returns false.
+  // Calls visit(a, b) for pairs of different objects with overlapping boxes, until it returns
+  // false.
   template <class Visit>
   void pairs(Visit visit) const {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> open{{0, 0}};

@@ -36,8 +36,8 @@ struct SurfacePart {
   static constexpr double flat_share = 1e-9;
 };
 
-// The parts of one object in order of their first triangle. The orientation of a part is the one of
-// most of its area. ids: result of welded().
+// The parts of one object in order of their first triangle. A part is oriented like
+// the larger share of its area. ids: result of welded().
 [[nodiscard]] std::vector<SurfacePart> surface_parts(const Scene& scene, const Object& object,
                                                      std::span<const std::uint32_t> ids);
 

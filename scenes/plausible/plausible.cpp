@@ -92,9 +92,8 @@ void name_darkness(const Scene& scene, Texts& found) {
 std::optional<std::string> wide_pixels_warning(double fx, double fy) {
   if (std::abs(fx / fy - 1.0) <= 0.01) return std::nullopt;
   return fmt::format(
-      "has pixels {:.4g} times as wide as high, and the CCTV chain shows them as squares; give fx "
-      "= "
-      "fy, and the number of columns that shows the same view",
+      "has pixels {:.4g} times as wide as high, and the CCTV chain shows them as squares; give "
+      "fx = fy, and the number of columns that shows the same view",
       fy / fx);
 }
 

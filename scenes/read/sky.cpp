@@ -143,7 +143,7 @@ Earth read_earth(Scene& scene, const TableReader& table, bool by_orbit) {
   return earth;
 }
 
-// Where and how bright it is follows from the date; without one from its keys.
+// With a trajectory the date gives the Moon's direction and brightness, otherwise the keys do.
 void read_moon(Scene& scene, const TableReader& table) {
   scene.moon = Moon();
   if (mission_of(scene) != nullptr) {

@@ -54,7 +54,7 @@ struct OrbitState {
 // everywhere).
 [[nodiscard]] OrbitState orbit_state(const Orbit& orbit, double position_deg);
 
-// Sets the scene's Sun, Earth and the pole of its albedo by latitude for a position. Throws
+// Sets the directions of Sun, Earth and the Earth's north pole for an orbit position. Throws
 // base::Error (Input) like orbit_state, and for a scene without [orbit].
 void move_along_orbit(Scene& scene, double position_deg);
 

@@ -42,7 +42,8 @@ struct AttitudeHistory {
 
   // v_GCRS = q v_body q*. Between rows the rotation is uniform, by the shorter way (slerp, Shoemake
   // 1985); spin continues at its rate. Throws base::Error (Input) outside the segments, and between
-  // rows of different attitude that are farther apart than `longest_gap_s` (Trajectory::longest_gap_s).
+  // rows of different attitude that are farther apart than `longest_gap_s`
+  // (Trajectory::longest_gap_s).
   [[nodiscard]] glm::dquat at(Instant t, double longest_gap_s) const;
 };
 

@@ -68,8 +68,8 @@ struct SunFollower {
   Vec3 normal{0.0, 0.0, 1.0};                       // unit, not along the axis
   double lowest_deg = -180.0, highest_deg = 180.0;  // at most 360 deg apart
 
-  // sun: unit, in the axes that the joint's parent moves. Along the axis all angles are equal: 0, or
-  // the nearest within the limits.
+  // sun: unit, in the axes that the joint's parent moves. Along the axis all angles are equal: 0,
+  // or the nearest within the limits.
   [[nodiscard]] double angle_deg(const Vec3& axis, const Vec3& sun) const;
 };
 
@@ -77,7 +77,8 @@ struct Joint {
   std::string name;
   std::optional<std::size_t> parent;  // in Linkage::joints
   Vec3 pivot_m{0.0}, axis{0.0, 0.0, 1.0};
-  // A fixed angle, an angle against time, deg, or by the Sun; of a track the pose against time.
+  // Joint: a fixed angle in deg, a table of angles over time, or following the Sun. Track: a table
+  // of poses over time, or another spacecraft.
   std::variant<double, AngleTable, PoseTable, Visitor, SunFollower> motion = 0.0;
 
   [[nodiscard]] bool moves() const { return motion.index() > 0; }
@@ -93,8 +94,8 @@ struct Linkage {
 
   [[nodiscard]] bool moves() const;
   // Of each joint at that moment of the mission; without a mission nothing moves but what follows
-  // the Sun. sun: unit, in the scene; only for followers. Throws base::Error (Input) at the file and
-  // its line for a moment outside a table.
+  // the Sun. sun: unit, in the scene; only for followers. Throws base::Error (Input) at the file
+  // and its line for a moment outside a table.
   [[nodiscard]] std::vector<JointState> at(const Mission* mission, Instant t,
                                            const Vec3& sun) const;
 };

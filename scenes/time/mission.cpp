@@ -14,8 +14,8 @@ namespace {
 constexpr double sun_radius_m = 695.7e6;  // IAU 2015 resolution B3
 constexpr double eclipse_step_s = 15.0;
 constexpr double eclipse_error_s = 1e-3;
-// Of sqrt(r^3 / GM). A fall from r to the centre takes sqrt(2) / 3 of it at least, so that a step on
-// an ellipse ends beyond r / 2, and goes less than half a revolution.
+// Of sqrt(r^3 / GM). A fall from r to the centre takes sqrt(2) / 3 of it at least, so that a step
+// on an ellipse ends beyond r / 2, and goes less than half a revolution.
 constexpr double longest_step_share = 0.3;
 
 // Unit vectors in GCRS.

@@ -70,8 +70,8 @@ struct EclipseTimes {
 [[nodiscard]] std::vector<EclipseTimes> eclipses_between(const Mission& mission, Instant from,
                                                          Instant to, double sun_angular_radius_deg);
 
-// From the Earth's centre to its limb, as seen from `position_m` on the side of `toward` (unit), rad.
-// The ellipsoid of WGS 84 about `pole` (unit), both in GCRS.
+// From the Earth's centre to its limb, as seen from `position_m` on the side of `toward` (unit),
+// rad. The ellipsoid of WGS 84 about `pole` (unit), both in GCRS.
 [[nodiscard]] double ellipsoid_limb_rad(const Vec3& position_m, const Vec3& toward,
                                         const Vec3& pole);
 
@@ -79,7 +79,8 @@ struct EclipseTimes {
 [[nodiscard]] std::optional<double> period_at(const Mission& mission, Instant t);
 
 // How far the spacecraft goes around the Earth from one time to a later one, with all full
-// revolutions, deg. In a gap of the trajectory they follow from the period before the gap.
+// revolutions, deg. Across a gap of the trajectory they follow from the period before it; neither
+// time is in a gap. Throws base::Error (Input) as Trajectory::at.
 [[nodiscard]] double revolved_deg(const Mission& mission, Instant from, Instant to);
 
 }  // namespace earthshine::scenes

@@ -333,9 +333,15 @@ double gap_of(const State& state) {
          glm::length(glm::cross(state.position_m, state.velocity_m_s));
 }
 
+// By the rate at either state, and by the angle between them, which on an ellipse the rates of two
+// states beside the perigee do not show.
 bool in_gap(const TrajectorySegment& segment, std::size_t before, Instant t) {
-  return segment.at.size() > 1 && t > segment.at[before] && t < segment.at[before + 1] &&
-         segment.at[before + 1] - segment.at[before] > gap_of(segment.states[before]);
+  if (segment.at.size() < 2 || t <= segment.at[before] || t >= segment.at[before + 1]) return false;
+  const State &a = segment.states[before], &b = segment.states[before + 1];
+  const double angle = std::atan2(glm::length(glm::cross(a.position_m, b.position_m)),
+                                  glm::dot(a.position_m, b.position_m));
+  return segment.at[before + 1] - segment.at[before] > std::min(gap_of(a), gap_of(b)) ||
+         angle > largest_gap_rad;
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ struct PowerLaw {
   std::size_t points = 0;
   [[nodiscard]] double error_at(double x) const;
   // Whether the points support the law: more points than parameters, an exponent from two standard
-  // errors above 0 to 2.5, with a standard error of at most 0.25. Samples give 0.5, patches up to 2.
+  // errors above 0 to 2.5, with a standard error of at most 0.25. Samples give 0.5, patches up to
+  // 2.
   [[nodiscard]] bool holds() const;
 };
 

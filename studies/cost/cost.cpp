@@ -250,9 +250,9 @@ RanksCost ranks_cost(const Bill& bill, std::size_t columns, double pixels) {
     (alone ? cost.alone_s : cost.shared_s) += seconds;
   }
   for (const raytrace::RenderReport& report : bill.pictures) cost.shared_s += report.seconds;
-  // Bytes per patch: the result of a row; in each sweep of the balance the factors and their sums
-  // in 16 bands. Then the row; two products in each iteration; four floats of the solution.
-  // Products are packed in fours of columns.
+  // Bytes per patch, in the order of the terms: result of a row; scale factors and their sums in 16
+  // bands, per balancing sweep; row; four floats of the solution, per column; two products per
+  // iteration, packed in fours of columns.
   const auto patches = static_cast<double>(bill.solve.patches);
   const double sweeps = bill.solve.balance.sweeps, fours = std::ceil(double(columns) / 4.0);
   cost.bytes_to_all = patches * (64.0 + 32.0 * sweeps + 8.0 + 16.0 * double(columns) +

@@ -69,9 +69,9 @@ struct MemoryNeed {
 // The setting to lower, for the largest part.
 [[nodiscard]] std::string memory_remedy(const MemoryNeed& need);
 
-// The case of a scene. patches: if known; otherwise the largest possible number, from the meshes.
-// Refinement to an error may end with far fewer. Until expect_rows(), row_entries is the largest
-// possible number, one for each ray or patch, and copies_matrix is true.
+// Sizes for a scene. patches: their number; if absent, the largest possible one is used. Refinement
+// to an error may end with far fewer. Until expect_rows(), row_entries is the largest possible
+// number, one for each ray or patch, and copies_matrix is true.
 [[nodiscard]] MemoryCase memory_case(const scenes::Scene& scene, const scenes::LightGroups& groups,
                                      const scenes::Effects& effects,
                                      const radiosity::SolveOptions& options,

@@ -62,7 +62,8 @@ Vec3 onto_disc(const scenes::Earth& earth, const Vec3& direction) {
   return std::cos(h) * earth.direction + std::sin(h) * glm::normalize(across);
 }
 
-// Mean illuminance from the scene's lamps: their flux over all surfaces.
+// Mean illuminance by the lamps: flux over surface area, plus the distant lamps'
+// illuminance; 1000 lx without lamps.
 double lamp_level_lx(const scenes::Scene& scene) {
   double flux = 0.0, area = 0.0;
   double distant_lx = 0.0;

@@ -77,8 +77,17 @@ std::vector<std::uint32_t> surround_of(const ObjectMap& map,
 
 constexpr std::uint8_t shows_back = 2;  // in the mask of cast_alone; 1: any other of its surfaces
 
-// The pixels of the window whose centre shows `object` without all others, and whether they show its
-// black back. Film goes on beyond the picture.
+// Film beyond the picture of a distorting lens may lie beyond all directions, where they repeat.
+bool has_direction(const raytrace::CameraModel& model, double x, double y) {
+  if (!model.projection.is_distorted()) return true;
+  constexpr double off_px = 1e-3;
+  const glm::dvec2 size(model.columns, model.rows), at(x, y);
+  return glm::length(model.projection.place(model.projection.direction(at / size)) * size - at) <
+         off_px;
+}
+
+// The pixels of the window whose centre shows `object` without all others, and whether they show
+// its black back. Film goes on beyond the picture.
 Mask cast_alone(const scenes::Scene& scene, const raytrace::CameraModel& model,
                 std::uint32_t object, const raytrace::Window& window) {
   scenes::Scene alone;
@@ -98,6 +107,7 @@ Mask cast_alone(const scenes::Scene& scene, const raytrace::CameraModel& model,
   base::parallel_chunks(rows, 8, [&](std::size_t begin, std::size_t end) {
     for (int y = window.y + static_cast<int>(begin); y < window.y + static_cast<int>(end); ++y) {
       for (int x = window.x; x < window.x + window.columns; ++x) {
+        if (!has_direction(model, x + 0.5, y + 0.5)) continue;
         const raytrace::Ray ray = model.ray(x + 0.5, y + 0.5, 0.0, 0.0);
         const scenes::Hit hit = query.closest(ray.origin, ray.direction);
         if (hit.missed()) continue;
@@ -243,7 +253,7 @@ PixelsOutside pixels_outside(const scenes::Scene& scene, const scenes::Camera& c
     });
   };
   const auto first = scene.triangles.begin() + record.first_triangle;
-  // A distorted picture's border is no convex set: its corners do not decide.
+  // With distortion a triangle may leave the picture although its corners are inside.
   if (!model.projection.is_distorted() &&
       std::all_of(first, first + record.triangle_count, shows)) {
     return outside;

@@ -69,12 +69,12 @@ struct TargetView {
                                                    const scenes::Camera& camera,
                                                    const ObjectMap& map);
 
-// Pixels beyond the picture whose centre would show the object without all others, up to a picture's
-// width and height from it on each side; lens distortion continues there.
+// Pixels beyond the picture whose centre would show the object without all others, up to a
+// picture's width and height from it on each side; lens distortion continues there.
 struct PixelsOutside {
   std::size_t count = 0;
-  int left = 0, right = 0, top = 0,
-      bottom = 0;  // the outermost of them; (0, 0) is the picture's first
+  // The outermost of them; (0, 0) is the picture's first pixel.
+  int left = 0, right = 0, top = 0, bottom = 0;
 };
 [[nodiscard]] PixelsOutside pixels_outside(const scenes::Scene& scene, const scenes::Camera& camera,
                                            std::uint32_t object, int columns, int rows);

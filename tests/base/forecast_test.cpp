@@ -6,8 +6,8 @@
 namespace earthshine::base {
 namespace {
 
-// From a fifth of the stage on. Before, in proportion: at a tenth half of 20 s and half of the 100 s
-// that were expected.
+// From a fifth of the stage on. Before, in proportion: at a tenth half of 20 s and half of the 100
+// s that were expected.
 TEST(Forecast, StepsOfASteadyStageGiveTheRestExactly) {
   Forecast forecast;
   forecast.begin({"solve", 100.0}, 0.0);  // 100 s were expected, and it takes 20 s

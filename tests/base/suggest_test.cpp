@@ -50,6 +50,8 @@ TEST(Suggest, AKnownWordIsNoSlip) {
   EXPECT_EQ(nearest_word("--file", Words{"--size", "--output"}), "--output");
   EXPECT_EQ(nearest_word("--resolution", Words{"--solution", "--size"}), "--size");
   EXPECT_EQ(nearest_word("origin", Words{"position", "pixel_origin"}), "position");
+  EXPECT_EQ(nearest_word("bay-to-sky", Words{"bay-to-sun", "bay-to-space"}), "bay-to-space");
+  EXPECT_EQ(nearest_word("positon", Words{"rotate", "translate"}), "translate");
   EXPECT_EQ(nearest_word("lamp", Words{"name", "light"}), "light");
   EXPECT_EQ(nearest_word("--earth", Words{"--part"}), "");  // two edits in five letters
 }

@@ -4,6 +4,8 @@ any order, makes the same files."""
 import json
 import math
 import struct
+import subprocess
+import sys
 import unittest
 
 import exr
@@ -228,16 +230,24 @@ class Dataset(program.Case):
         self.assertTrue(any(0 < facts[k][0]["visib_fract"] < 0.9 for k in facts), facts)
 
     def test_labels_follow_what_hangs_on_joints(self):
-        """By an angle that is drawn, by the Sun, and by the time; with and without a drawn pose."""
+        """By an angle that is drawn, by the Sun, and by a table of the time; with and without a drawn pose."""
+        subprocess.run([sys.executable, program.TOP / "scenes/time/circle_to_oem.py", "-o", "t.oem", "--start", "2026-03-01T12:00:00",
+                        "--hours", "1", "--altitude", "425", "--inclination", "28.5", "--node", "300"], cwd=self.folder, check=True)
+        self.write("j.csv", "utc, j\n2026-03-01T12:00:00, 0\n2026-03-01T12:01:00, 160\n")
         scene = SCENE.replace('name = "cube"\n', 'name = "cube"\njoint = "j"\n')
         joint = '[[joint]]\nname = "j"\npivot = [0, 20, 0]\naxis = [0, 1, 1]\n'
         still = DATASET.replace("low = [-0.2, -0.2, -0.2]\nhigh = [0.2, 0.2, 0.2]\nturns = true\n", "")
         for name, how, varied in (
                 ("angle", "angle_deg = 20\n", '[[vary]]\nkey = "joint.j.angle_deg"\nuniform = [-150, 150]\n'),
-                ("sun", 'follows = "sun"\nnormal = [1, 0, 0]\n', "")):
+                ("sun", 'follows = "sun"\nnormal = [1, 0, 0]\n', ""),
+                ("time", 'angle_deg = "j.csv"\n', '[[vary]]\nkey = "time.moment"\nchoice = [%s]\n' % ", ".join(
+                    f'"2026-03-01T12:00:{k:02}Z"' for k in range(60)))):
             for kind, recipe in (("still", still), ("drawn", DATASET)):
-                self.write("a.toml", scene + joint + how)
-                self.write("set.toml", recipe + varied)
+                sky = '[time]\nstart = "2026-03-01T12:00:00Z"\n[orbit]\ntrajectory = "t.oem"\n'
+                self.write("a.toml", (scene.replace("[sun]\ndirection = [1, 0.3, 0.5]\n", sky + "[sun]\n") if name == "time" else scene)
+                           + joint + how)
+                self.write("set.toml", (recipe.replace('[[vary]]\nkey = "sun.direction"\ndirection = true\n', "")
+                                        if name == "time" else recipe) + varied)
                 self.done("dataset", "set.toml", "-o", "out", "-q")
                 poses, _ = self.check_outlines(range(4))
                 self.assertEqual(len({str(pose[0]["cam_R_m2c"]) for pose in poses.values()}), 4, (name, kind))
@@ -363,6 +373,27 @@ class Dataset(program.Case):
         self.done("dataset", "set.toml", "-o", "out", "-q", "--images", "0")
         self.assertNotEqual((self.folder / "out/images/000000.json").read_text(), before)
         self.assertFalse(any(path.exists() for path in lists))  # the others are of the scene before
+
+    def test_a_file_that_an_image_draws_is_part_of_its_key(self):
+        """A mesh chosen by [[vary]] is no file of the scene; its change makes the image anew."""
+        mesh = "v 0 0 0\nv 0 {0} 0\nv 0 0 {0}\nf 1 2 3\n"
+        self.write("one.obj", mesh.format(10))
+        self.write("a.toml", SCENE + '[[object]]\nname = "sheet"\nmesh = "one.obj"\nmaterial = "grey"\n')
+        self.write("two.obj", mesh.format(20))
+        self.write("set.toml", DATASET.replace("images = 4", "images = 2") + '[[vary]]\nkey = "object.sheet.mesh"\nchoice = ["two.obj"]\n')
+        self.done("dataset", "set.toml", "-o", "out", "-q")
+        self.write("two.obj", mesh.format(90))
+        self.done("dataset", "set.toml", "-o", "out", "-q")
+        self.done("dataset", "set.toml", "-o", "anew", "-q")
+        self.assertEqual(self.files("out"), self.files("anew"))
+
+    def test_the_original_of_a_target_keeps_its_shape(self):
+        self.write("a.toml", SCENE.replace('name = "cube"\n', 'name = "cube"\ntranslate = [0, 0, 90]\n') +
+                   '[[object]]\nname = "copy"\ninstance_of = "cube"\ntranslate = [0, 90, 0]\n')
+        copy = DATASET.replace('name = "cube"', 'name = "copy"').replace('look_at_target = "cube"', 'look_at_target = "copy"')
+        for key, values in (("max", "[[20, 30, 10], [30, 30, 10]]"), ("segments", "[3, 4]")):
+            self.write("set.toml", copy + f'[[vary]]\nkey = "object.cube.{key}"\nuniform = {values}\n')
+            self.says(self.refused("dataset", "set.toml", "-o", "out"), "set.toml", f"object.cube.{key}", "the original of the target", "copy")
 
     def test_a_lost_picture_is_drawn_again(self):
         self.write("set.toml", DATASET)

@@ -79,15 +79,18 @@ class PartFaults(study_parts_test.StudyPartsCase):
             self.done(*call, "-q")
             seconds = time.monotonic() - begun
             self.outcome(name)
-            for kill in range(kills):
+            # A machine that has become faster finishes shares before their kill: the next ones come earlier.
+            kill, latest = 0, 0.5 * seconds
+            while kill < kills or killed <= kills // 5:
                 run = self.started(*call, "--part", f"{chance.randint(1, 3)}/3", "-q")
-                time.sleep(0.5 * seconds * (kill + chance.random()) / kills)
+                time.sleep(latest * (kill % kills + chance.random()) / kills)
                 run.send_signal(signal.SIGKILL)
                 run.wait()
+                kill += 1
                 killed += run.returncode == -signal.SIGKILL
                 if run.returncode == 0:  # a finished share would be skipped at once
+                    latest *= 0.8
                     shutil.rmtree(self.folder / folder)
-            self.assertGreater(killed, kills // 5)
             self.parts(call, 1, 2, 3, of=3)
             self.assertEqual(self.merged(name, folder), whole)
 

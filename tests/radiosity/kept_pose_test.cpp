@@ -15,8 +15,8 @@ namespace {
 
 using test::SceneFolder;
 
-// A bay with a floor, two walls, a block on the floor, a mirror, a sheet, and an arm on a joint with
-// a lamp of its own; a standing spot and a disk, and the Earth above.
+// A bay with a floor, two walls, a block on the floor, a mirror, a sheet, and an arm on a joint
+// with a lamp of its own; a standing spot and a disk, and the Earth above.
 constexpr const char* pose_scene = R"(format = 1
 [quality]
 patch_edge = 0.4

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A glTF file as read by tinygltf. The values that are read are validated (json.h), but indices may be out of
-// range. Holds its materials, lamps and cameras in the scene's form.
+// A glTF file as read by tinygltf. The values that are read are validated (json.h), but indices may
+// be out of range. Holds its materials, lamps and cameras in the scene's form.
 #pragma once
 
 #include <tiny_gltf.h>

@@ -14,8 +14,8 @@ namespace earthshine::raytrace {
 namespace {
 
 // A lamp, and one of 1.5 % of its light behind a plate. The error of the sum of both says little
-// about the weak one. With both layers as sums each of them has the error, and so has the sum of all
-// layers.
+// about the weak one. With both layers as sums each of them has the error, and so has the sum of
+// all layers.
 TEST(SumErrors, EachSumHasTheError) {
   tests::SceneBuilder builder;
   const std::uint32_t grey = builder.material(tests::grey(0.5));

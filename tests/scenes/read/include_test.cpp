@@ -56,7 +56,8 @@ TEST_F(IncludedFiles, FileNamesAreRelativeToTheFileThatHasThem) {
   EXPECT_EQ(scene.objects[1].area_m2, 0.5);
 }
 
-// The first camera is the one that commands use without --camera. Of two files the later one replaces.
+// The first camera is the one that commands use without --camera. Of two files the later one
+// replaces.
 TEST_F(IncludedFiles, CamerasAreInTheOrderSceneFirstFileSecondFile) {
   const auto camera = [](const char* name, int x) {
     return fmt::format(

@@ -39,8 +39,8 @@ TEST(Astronomy, SunStandsWhereTheAlmanacHasIt) {
   }
 }
 
-// The Astronomical Almanac's low-precision formulas for the Sun (page C5), within 0.01 deg from 1950
-// to 2050, each month of two years: n days from J2000, mean longitude L and anomaly g,
+// The Astronomical Almanac's low-precision formulas for the Sun (page C5), within 0.01 deg from
+// 1950 to 2050, each month of two years: n days from J2000, mean longitude L and anomaly g,
 // longitude L + 1.915 sin g + 0.020 sin 2g; distance 1.00014 - 0.01671 cos g - 0.00014 cos 2g au,
 // within 0.0003.
 TEST(Astronomy, SunAgreesWithTheAlmanacsLowPrecisionFormulas) {

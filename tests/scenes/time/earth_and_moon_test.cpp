@@ -93,9 +93,9 @@ TEST(Moonlight, HasTheDatesOfFullAndNewMoon) {
 }
 
 // Of the total eclipse of 2026 March 3 the Moon is in the penumbra from 8:44 to 14:23 UTC, in part
-// in the umbra from 9:50, and whole from 11:04 to 12:03 (Espenak and Meeus, "Five millennium canon of
-// lunar eclipses", NASA/TP-2009-214172). The share of its centre falls from 1 to 0 from 9:00 to 10:30
-// and is symmetric about 11:34. The full Moon of 2026 May 31, at 8:45, has no eclipse.
+// in the umbra from 9:50, and whole from 11:04 to 12:03 (Espenak and Meeus, "Five millennium canon
+// of lunar eclipses", NASA/TP-2009-214172). The share of its centre falls from 1 to 0 from 9:00 to
+// 10:30 and is symmetric about 11:34. The full Moon of 2026 May 31, at 8:45, has no eclipse.
 TEST(Moonlight, IsTheShareOfTheSunThatTheEarthLeavesTheMoon) {
   const test::SceneFolder folder;
   // Begins at the right ascension 220 deg, the Moon near 163 deg: not behind the Earth.
@@ -132,8 +132,8 @@ TEST(Moonlight, IsTheShareOfTheSunThatTheEarthLeavesTheMoon) {
   }
 }
 
-// 2026: perihelion January 3, 0.98330 au; aphelion July 6, 1.01664 au (US Naval Observatory). In low
-// orbit the distance differs by up to 4.5e-5 of it.
+// 2026: perihelion January 3, 0.98330 au; aphelion July 6, 1.01664 au (US Naval Observatory). In
+// low orbit the distance differs by up to 4.5e-5 of it.
 TEST(Sunlight, FollowsItsDistanceByDateUnlessTheSceneGivesIt) {
   const test::SceneFolder folder;
   for (const auto& [date, units] :

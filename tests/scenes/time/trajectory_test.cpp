@@ -220,6 +220,20 @@ TEST_F(TrajectoryFile, GapsAreRefusedWhereAStateIsAskedFor) {
       holds(refusal(text, start + 700.0), {"t.oem:23", "gap of 660 s", "12:09:00Z", "36 deg"}));
 }
 
+// An ellipse of eccentricity 0.7 and 37 000 s with states every 2500 s. Around its apogee 2500 s
+// are less than 36 deg; the last step before the perigee begins slowly and ends fast.
+TEST_F(TrajectoryFile, GapsBeforeAPerigeeAreRefused) {
+  Ellipse ellipse;
+  ellipse.semi_major_m = 24000e3;
+  ellipse.eccentricity = 0.7;
+  const double period = 2.0 * base::pi / ellipse.mean_motion_rad_s();
+  const std::string text = oem_of(ellipse, start, 2500.0, 16);
+  EXPECT_EQ(refusal(text, start + 0.5 * period), "was not refused");
+  const double last = 2500.0 * std::floor(period / 2500.0);
+  EXPECT_LT(last - 2500.0, period);
+  EXPECT_TRUE(holds(refusal(text, start + (last - 100.0)), {"t.oem", "gap of 2500 s", "36 deg"}));
+}
+
 TEST_F(TrajectoryFile, UnknownKeywordsAreNamed) {
   (void)read(oem_of(Ellipse{}, start, 60.0, 5, "SOLAR_FLUX = 120\n"));
   ASSERT_EQ(warnings.size(), 1U);

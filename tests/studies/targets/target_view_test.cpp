@@ -207,9 +207,9 @@ TEST(TargetView, HolesShowWhatIsBehindAndHideNothing) {
   EXPECT_TRUE(view.hidden_by.empty());
 }
 
-// A plate 1 m wide around the origin, of which the picture's 2 m show what lies beyond x = 1.2 of the
-// camera's axis: 32 pixels for 2 m, 16 for the plate. The axis is over x = 1.2, so that the plate's
-// columns are from (-0.5 - 1.2 + 1) * 16 = -11.2 to 4.8; its rows are 8 to 24.
+// A plate 1 m wide around the origin, of which the picture's 2 m show what lies beyond x = 1.2 of
+// the camera's axis: 32 pixels for 2 m, 16 for the plate. The axis is over x = 1.2, so that the
+// plate's columns are from (-0.5 - 1.2 + 1) * 16 = -11.2 to 4.8; its rows are 8 to 24.
 TEST(TargetView, PixelsOutsideAreThoseOfTheFilmBeyondThePicture) {
   const tests::SceneBuilder builder = tests::plate_on_ground(0.2, 0.5);
   scenes::Camera camera = tests::above(2.0, 2.0);
@@ -219,6 +219,12 @@ TEST(TargetView, PixelsOutsideAreThoseOfTheFilmBeyondThePicture) {
   EXPECT_EQ((std::array{found.left, found.right, found.top, found.bottom}),
             (std::array{-11, -1, 8, 23}));
   EXPECT_EQ(pixels_outside(builder.scene, tests::above(2.0, 2.0), 1, 32, 32).count, 0U);
+  // The film around a wide fisheye picture lies beyond 180 deg: no direction is there twice.
+  scenes::Camera wide = tests::above(2.0, 2.0);
+  wide.columns = wide.rows = 32;
+  wide.intrinsics = {10.0, 10.0, 16.0, 16.0};
+  wide.distortion = scenes::Distortion::Fisheye;
+  EXPECT_EQ(pixels_outside(builder.scene, wide, 1, 32, 32).count, 0U);
 }
 
 }  // namespace
