@@ -142,7 +142,7 @@ std::string answers_html(const StudyResults& study) {
   for (const AnswerEntry& answer : study.answers) {
     html += fmt::format("<li class=\"answer {}\"><strong>{} {}</strong>: {}",
                         answer.found ? "found" : "not-found", answer.found ? "✓" : "✗",
-                        escaped(answer.wanted), escaped(answer.text));
+                        escaped(answer.wanted), degrees(escaped(answer.text)));
     std::string facts;
     const auto fact = [&facts](const char* name, const std::string& value) {
       if (!value.empty()) facts += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", name, value);

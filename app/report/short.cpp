@@ -13,7 +13,7 @@ namespace earthshine::app {
 namespace {
 
 struct Tally {
-  std::size_t camera = 0, seen = 0, all = 0;
+  std::size_t camera = 0, seen = 0, in_view = 0, all = 0;
   std::map<std::string, std::size_t> hindrances;  // how often each is the first one
 };
 
@@ -24,7 +24,7 @@ std::string hindrance_of(const ResultEntry& result) {
   return first.by.empty() ? cause : cause + " by " + first.by;
 }
 
-// Sorted by the number of detections, descending.
+// Sorted by the number of detections, descending; among equal ones by how often it is in view.
 std::vector<Tally> tallies_of(const StudyResults& study, const std::vector<std::size_t>& results) {
   std::vector<Tally> tallies;
   for (const std::size_t k : results) {
@@ -32,18 +32,20 @@ std::vector<Tally> tallies_of(const StudyResults& study, const std::vector<std::
     auto tally = std::find_if(tallies.begin(), tallies.end(),
                               [&](const Tally& t) { return t.camera == result.camera; });
     if (tally == tallies.end()) {
-      tallies.push_back({result.camera, 0, 0, {}});
+      tallies.emplace_back().camera = result.camera;
       tally = std::prev(tallies.end());
     }
     ++tally->all;
+    if (result.sight.verdict != studies::Verdict::OutOfView) ++tally->in_view;
     if (is_seen(result.sight.verdict)) {
       ++tally->seen;
     } else {
       ++tally->hindrances[hindrance_of(result)];
     }
   }
-  std::stable_sort(tallies.begin(), tallies.end(),
-                   [](const Tally& a, const Tally& b) { return a.seen > b.seen; });
+  std::stable_sort(tallies.begin(), tallies.end(), [](const Tally& a, const Tally& b) {
+    return std::pair(a.seen, a.in_view) > std::pair(b.seen, b.in_view);
+  });
   return tallies;
 }
 

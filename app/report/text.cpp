@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -212,9 +213,15 @@ std::string block_data(const StudyResults& study, const Block& block) {
 std::string degrees(std::string text) {
   constexpr std::string_view unit = " deg", to = " to ";
   for (std::size_t at = 0; (at = text.find(unit, at)) != std::string::npos;) {
+    const std::size_t end = at + unit.size();
+    if (end < text.size() && std::isalpha(static_cast<unsigned char>(text[end])) != 0) {
+      at = end;  // "degrees"
+      continue;
+    }
     text.replace(at, unit.size(), "°");
     const std::size_t between = text.rfind(to, at), comma = text.rfind(',', at);
-    if (between != std::string::npos && (comma == std::string::npos || between > comma)) {
+    if (between != std::string::npos && (comma == std::string::npos || between > comma) &&
+        between > 0 && std::isdigit(static_cast<unsigned char>(text[between - 1])) != 0) {
       text.insert(between, "°");
     }
   }
