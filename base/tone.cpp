@@ -16,25 +16,6 @@ namespace {
 constexpr std::size_t chunk_px = 4096;
 constexpr double middle_grey = 0.18;
 
-// A part of cell `to` of a line that cell `from` of the same line in other cells covers.
-struct Overlap {
-  int from = 0, to = 0;
-  double share = 0.0;  // of `to`
-};
-
-std::vector<Overlap> overlaps(int from, int to) {
-  std::vector<Overlap> found;
-  const double ratio = static_cast<double>(from) / to;  // cells of `from` in one of `to`
-  for (int k = 0; k < to; ++k) {
-    const double begin = k * ratio, end = (k + 1) * ratio;
-    for (int i = static_cast<int>(begin); i < from && i < end; ++i) {
-      const double share = (std::min(end, i + 1.0) - std::max(begin, double(i))) / ratio;
-      if (share > 0.0) found.push_back({i, k, share});
-    }
-  }
-  return found;
-}
-
 void refuse_non_finite(const Image& image, const std::vector<float>& luminance) {
   for (std::size_t i = 0; i < luminance.size(); ++i) {
     if (std::isfinite(luminance[i])) continue;
@@ -160,31 +141,6 @@ struct SrgbSteps {
 
 double srgb_linear(double encoded) {
   return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
-
-std::vector<std::uint8_t> resized_srgb(const std::vector<std::uint8_t>& bytes, std::size_t channels,
-                                       const Grid& from, const Grid& to) {
-  std::array<double, 256> linear{};
-  for (std::size_t k = 0; k < linear.size(); ++k) linear[k] = srgb_linear(double(k) / 255.0);
-  const std::vector<Overlap> across = overlaps(from.columns, to.columns);
-  const std::vector<Overlap> down = overlaps(from.rows, to.rows);
-  const auto index = [channels](const Grid& grid, int x, int y) {
-    return channels * (static_cast<std::size_t>(y) * static_cast<std::size_t>(grid.columns) +
-                       static_cast<std::size_t>(x));
-  };
-  std::vector<double> sums(channels * static_cast<std::size_t>(to.columns) *
-                           static_cast<std::size_t>(to.rows));
-  for (const Overlap& row : down) {
-    for (const Overlap& column : across) {
-      for (std::size_t c = 0; c < channels; ++c) {
-        sums[index(to, column.to, row.to) + c] +=
-            column.share * row.share * linear[bytes[index(from, column.from, row.from) + c]];
-      }
-    }
-  }
-  std::vector<std::uint8_t> resized;
-  for (const double sum : sums) resized.push_back(srgb_byte(sum));
-  return resized;
 }
 
 std::uint8_t srgb_byte(double linear) {

@@ -14,15 +14,6 @@ namespace earthshine::base {
 // Its inverse for a signal in [0, 1].
 [[nodiscard]] double srgb_linear(double encoded);
 
-struct Grid {
-  int columns = 0, rows = 0;
-};
-// A picture of `channels` bytes a pixel, sRGB encoded, on another grid over the same area: each
-// pixel is the mean of the linear signal over its own area.
-[[nodiscard]] std::vector<std::uint8_t> resized_srgb(const std::vector<std::uint8_t>& bytes,
-                                                     std::size_t channels, const Grid& from,
-                                                     const Grid& to);
-
 // An exposure. Pictures for comparison by eye share one.
 struct ToneReport {
   double exposure = 1.0;         // display signal per cd/m^2 below the shoulder

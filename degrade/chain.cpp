@@ -2,12 +2,14 @@
 #include "degrade/chain.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <initializer_list>
 
 #include "base/error.h"
 #include "base/suggest.h"
 #include "base/tone.h"
+#include "degrade/stage/axis_map.h"
 
 namespace earthshine::degrade {
 namespace {
@@ -151,6 +153,22 @@ std::vector<StagePlan> plan(const CctvCamera& camera, const Monitor& monitor,
     rows.push_back({&stage, runs(stage, setup, nullptr)});
   }
   return rows;
+}
+
+void resize_screen(Result& result, int columns, int rows) {
+  const auto channels = static_cast<std::size_t>(result.channels);
+  std::array<float, 256> linear{};
+  for (std::size_t k = 0; k < linear.size(); ++k) {
+    linear[k] = static_cast<float>(base::srgb_linear(static_cast<double>(k) / 255.0));
+  }
+  Picture screen{result.columns, result.rows, std::vector<Plane>(channels)};
+  for (std::size_t i = 0; i < result.pixels.size(); ++i) {
+    screen.planes[i % channels].push_back(linear[result.pixels[i]]);
+  }
+  screen = apply(screen, area_average(result.columns, columns), area_average(result.rows, rows));
+  result.pixels = screen_bytes(screen, 1.0);
+  result.columns = columns;
+  result.rows = rows;
 }
 
 Result degrade(const base::Image& radiance, const CctvCamera& camera, const Monitor& monitor,

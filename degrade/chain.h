@@ -167,6 +167,9 @@ struct Stage {
 // else after one frame, which lasts two fields.
 [[nodiscard]] double lag_of(const StageContext& at);
 
+// The screen's bytes on another grid: means of the linear signal over its pixels.
+void resize_screen(Result& result, int columns, int rows);
+
 // Stages that run for this camera and monitor, as far as known without a picture: an automatic gain
 // may be 1.
 struct StagePlan {

@@ -102,19 +102,11 @@ void RayQuery::Embree::add_instances(const Scene& source, const Vec3& centre) {
     Original& original = originals[instance.object];
     if (original.scene == nullptr) {
       const Object& first = source.objects[instance.object];
-      std::uint32_t low = ~0U, high = 0;
-      Box box;
-      for (std::uint32_t t = 0; t < first.triangle_count; ++t) {
-        for (const std::uint32_t v : source.triangles[first.first_triangle + t].vertex) {
-          low = std::min(low, v);
-          high = std::max(high, v);
-          box.add(source.vertices[v]);
-        }
-      }
-      original.centre = Vec3(box.middle_in_single());
+      const auto [begin, count] = vertices_of(source, first);
+      original.centre = Vec3(bounds_of(source, first).middle_in_single());
       original.scene = new_scene();
-      add_triangles(original.scene, source, first.first_triangle, first.triangle_count, low,
-                    std::size_t{high} + 1, original.centre, Which::All);
+      add_triangles(original.scene, source, first.first_triangle, first.triangle_count, begin,
+                    std::size_t{begin} + count, original.centre, Which::All);
       rtcCommitScene(original.scene);
     }
     const Vec3 offset = instance.linear * original.centre + instance.offset_m - centre;

@@ -45,6 +45,17 @@ double Corners::solid_angle() const {
                                                 glm::dot(b, c) * la + glm::dot(c, a) * lb);
 }
 
+VertexRange vertices_of(const Scene& scene, const Object& object) {
+  std::uint32_t low = ~0U, high = 0;
+  for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
+    for (const std::uint32_t v : scene.triangles[object.first_triangle + k].vertex) {
+      low = std::min(low, v);
+      high = std::max(high, v);
+    }
+  }
+  return high < low ? VertexRange() : VertexRange{low, high - low + 1};
+}
+
 Box bounds_of(const Scene& scene, const Object& object) {
   Box box;
   for (std::uint32_t k = 0; k < object.triangle_count; ++k) {

@@ -20,6 +20,10 @@ struct Box {
     low = glm::min(low, other.low);
     high = glm::max(high, other.high);
   }
+  [[nodiscard]] bool meets(const Box& other) const {
+    return glm::all(glm::lessThanEqual(low, other.high)) &&
+           glm::all(glm::lessThanEqual(other.low, high));
+  }
   [[nodiscard]] Vec3 middle() const { return 0.5 * (low + high); }
   // Not inlined: inlined, GCC 12 drops the rounding from double to float of two components that it
   // vectorises.
@@ -57,6 +61,11 @@ struct Barycentric {
 [[nodiscard]] Barycentric barycentric(const Vec3& p, const Vec3& a, const Vec3& edge1,
                                       const Vec3& edge2);
 
+// An object's vertices are its own and follow one another.
+struct VertexRange {
+  std::uint32_t first = 0, count = 0;
+};
+[[nodiscard]] VertexRange vertices_of(const Scene& scene, const Object& object);
 // Bounding box of the object's triangles.
 [[nodiscard]] Box bounds_of(const Scene& scene, const Object& object);
 

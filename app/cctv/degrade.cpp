@@ -142,13 +142,13 @@ struct Reader {
   }
 };
 
-void note_wide_pixels(const std::string& path, const base::ExrHeader& header) {
+void note_non_square_pixels(const std::string& path, const base::ExrHeader& header) {
   for (const auto& [name, value] : header.text) {
     if (name != "earthshine:camera.K") continue;
     double fx = 1.0, zero = 0.0, fy = 1.0;
     std::istringstream words(value);
     if (!(words >> fx >> zero >> zero >> zero >> fy)) continue;
-    if (const auto text = scenes::wide_pixels_warning(fx, fy)) {
+    if (const auto text = scenes::non_square_pixels_warning(fx, fy)) {
       note("warning: " + path + " " + *text);
     }
   }
@@ -182,7 +182,7 @@ void run(const DegradeCall& call, const Common& common) {
   Reader reader;
   reader.quiet = common.quiet;
   const base::ExrHeader header = base::ExrReader(tape.front().inputs.front()).header();
-  if (!common.quiet) note_wide_pixels(tape.front().inputs.front(), header);
+  if (!common.quiet) note_non_square_pixels(tape.front().inputs.front(), header);
   CctvSetup setup = setup_for(call, common, header, tape);
   degrade::Options& options = setup.chain.options;
   options.off = call.off;

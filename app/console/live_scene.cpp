@@ -98,11 +98,11 @@ LiveRequest::View view_of(const Json& json) {
 struct MovableKey {
   const char *table, *key;
   std::size_t count;
-  Moved kind;
+  MovableKind kind;
 };
-constexpr MovableKey movable_keys[] = {{"light", "position", 3, Moved::Lamp},
-                                       {"object", "translate", 3, Moved::Object},
-                                       {"joint", "angle_deg", 1, Moved::Joint}};
+constexpr MovableKey movable_keys[] = {{"light", "position", 3, MovableKind::Lamp},
+                                       {"object", "translate", 3, MovableKind::Object},
+                                       {"joint", "angle_deg", 1, MovableKind::Joint}};
 
 std::size_t count_of(const std::string& key) {
   for (const MovableKey& one : movable_keys) {
@@ -201,7 +201,7 @@ std::vector<LiveScene::Movable> LiveScene::movables() const {
       const auto* text = name ? std::get_if<std::string>(&name->node.value) : nullptr;
       const auto* value = scenes::find_entry(keys, key);
       // Without the key: objects and joints are at 0, a lamp without a position has none.
-      if (text == nullptr || (value == nullptr && kind == Moved::Lamp)) continue;
+      if (text == nullptr || (value == nullptr && kind == MovableKind::Lamp)) continue;
       std::vector<double> numbers =
           value ? scenes::numbers_of(value->node) : std::vector<double>(count, 0.0);
       if (numbers.size() != count) continue;
@@ -240,10 +240,10 @@ void LiveScene::find_in_scene(Movable& one, const std::string& name,
     return found == list.end() ? std::nullopt
                                : std::optional(static_cast<std::size_t>(found - list.begin()));
   };
-  if (one.kind == Moved::Object) {
+  if (one.kind == MovableKind::Object) {
     one.index = index_in(scene.objects);
     one.moves_warm = one.index.has_value();
-  } else if (one.kind == Moved::Joint) {
+  } else if (one.kind == MovableKind::Joint) {
     if (scene.linkage) one.index = index_in(scene.linkage->joints);
     one.moves_warm = one.index && !scene.linkage->joints[*one.index].moves();
   } else {
@@ -270,14 +270,14 @@ std::optional<scenes::PoseChange> LiveScene::change_to(const Set& set) const {
     const std::vector<double> now = value_in(set, one), before = value_in(read_set_, one);
     if (now == before) continue;
     if (!one.moves_warm) return std::nullopt;
-    if (one.kind == Moved::Joint) {
+    if (one.kind == MovableKind::Joint) {
       change.joints.push_back({*one.index, now[0]});
       continue;
     }
     const double unit_m = scene_.loaded.scene.unit_m;
     const Vec3 at_m = unit_m * Vec3(now[0], now[1], now[2]);
     const Vec3 shift_m = at_m - unit_m * Vec3(before[0], before[1], before[2]);
-    if (one.kind == Moved::Object) {
+    if (one.kind == MovableKind::Object) {
       change.objects.push_back({*one.index, shift_m});
       continue;
     }
@@ -300,11 +300,11 @@ Json LiveScene::marks() const {
     if (!one.index) continue;
     Json mark = {{"key", one.key}};
     std::string hangs_on;
-    if (one.kind == Moved::Object) {
+    if (one.kind == MovableKind::Object) {
       mark["object"] = *one.index;
       mark["at"] = to_json(scenes::bounds_of(scene, scene.objects[*one.index]).middle());
       hangs_on = scene.objects[*one.index].joint;
-    } else if (one.kind == Moved::Lamp) {
+    } else if (one.kind == MovableKind::Lamp) {
       mark["at"] = to_json(scene.lamps[*one.index].position);
       hangs_on = scene.lamps[*one.index].joint;
     } else {
@@ -313,8 +313,7 @@ Json LiveScene::marks() const {
       mark["axis"] = to_json(joints[*one.index].pose.rotation * joint.axis);
     }
     if (!hangs_on.empty()) {
-      const auto joint = std::ranges::find(scene.linkage->joints, hangs_on, &scenes::Joint::name);
-      const auto k = static_cast<std::size_t>(joint - scene.linkage->joints.begin());
+      const std::size_t k = scenes::joint_index(*scene.linkage, hangs_on);
       for (int column = 0; column < 3; ++column) {
         mark["rotation"].push_back(to_json(joints[k].pose.rotation[column]));
       }

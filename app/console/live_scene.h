@@ -34,7 +34,7 @@ struct LiveRequest {
 // The wanted error of each level above 0.
 inline constexpr double level_errors[] = {0.3, 0.2, 0.1, 0.05, 0.03, 0.02};
 
-enum class Moved { Lamp, Object, Joint };
+enum class MovableKind { Lamp, Object, Joint };
 
 class LiveScene {
  public:
@@ -52,7 +52,7 @@ class LiveScene {
   struct Movable {
     std::string key;
     std::vector<double> value;
-    Moved kind;
+    MovableKind kind;
     std::optional<std::size_t> index;  // in the scene's list
     bool moves_warm;                   // another value needs no file
     std::optional<Vec3> aim_m;         // of a spot: the point that it keeps aiming at

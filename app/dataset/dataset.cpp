@@ -99,16 +99,17 @@ class DataSet {
   }
 
   [[nodiscard]] const Recipe& recipe() const { return recipe_; }
-  [[nodiscard]] bool is_done(std::size_t image) const {
-    return !labels(image).is_null() && has_pictures(image);
+  // The labels of a finished image; null if it is missing or of other files.
+  [[nodiscard]] Json finished(std::size_t image) const {
+    Json known = labels(image);
+    return has_pictures(image) ? known : Json();
   }
-  // Whether the finished picture has its error.
-  [[nodiscard]] bool reached(std::size_t image) const { return labels(image)["reached"]; }
   // Removes the lists over all images, which a new image makes wrong.
   void drop_lists() const {
     for (const fs::path& list : folder_.lists()) fs::remove(list);
   }
-  void make(std::size_t image);
+  // Returns whether the picture has its error.
+  bool make(std::size_t image);
   // Writes the lists over all images; false where images are missing.
   bool finish() const;
 
@@ -220,15 +221,13 @@ void DataSet::refuse_varied_originals(const scenes::Scene& scene) const {
 }
 
 std::vector<scenes::Pose> DataSet::joints_of_targets(const scenes::Scene& scene) const {
+  std::vector<scenes::JointState> joints;
+  if (scene.linkage) joints = scenes::joints_now(scene);
   std::vector<scenes::Pose> poses;
   for (const std::uint32_t object : targets_in(scene)) {
     const std::string& joint = scene.objects[object].joint;
-    poses.emplace_back();
-    if (joint.empty()) continue;
-    const auto found = std::ranges::find(scene.linkage->joints, joint, &scenes::Joint::name);
-    poses.back() =
-        scenes::joints_now(scene)[static_cast<std::size_t>(found - scene.linkage->joints.begin())]
-            .pose;
+    poses.push_back(joint.empty() ? scenes::Pose()
+                                  : joints[scenes::joint_index(*scene.linkage, joint)].pose);
   }
   return poses;
 }
@@ -237,11 +236,10 @@ std::vector<scenes::Pose> DataSet::model_to_scene(const scenes::Scene& scene,
                                                   const Draw& draw) const {
   std::vector<scenes::Pose> poses = joints_of_targets(scene);
   for (std::size_t t = 0; t < poses.size(); ++t) {
-    const glm::dmat3 back = glm::transpose(model_joints_[t].rotation);
     poses[t] =
         poses[t] *
         scenes::Pose{scenes::rotation_xyz(draw.poses[t].rotate_deg), draw.poses[t].translate_m} *
-        scenes::Pose{back, -(back * model_joints_[t].offset_m)};
+        scenes::inverse(model_joints_[t]);
   }
   return poses;
 }
@@ -306,11 +304,7 @@ void DataSet::write_picture(const base::Image& picture, const Draw& draw,
   const fs::path rgb = folder_.bop("rgb", image);
   if (cctv) {
     degrade::Result shown = run_chain(*cctv, picture);
-    const auto channels = static_cast<std::size_t>(shown.channels);
-    shown.pixels = base::resized_srgb(shown.pixels, channels, {shown.columns, shown.rows},
-                                      {picture.width, picture.height});
-    shown.columns = picture.width;
-    shown.rows = picture.height;
+    degrade::resize_screen(shown, picture.width, picture.height);
     return write_cctv(rgb.string(), *cctv, shown);
   }
   const base::ToneMapped tone =
@@ -331,7 +325,7 @@ std::vector<Masks> DataSet::write_masks(const std::vector<studies::TargetView>& 
   return masks;
 }
 
-void DataSet::make(std::size_t image) {
+bool DataSet::make(std::size_t image) {
   const Draw draw = draw_values(recipe_, image);
   Common common = common_;
   common.seed = draw.seed;
@@ -394,6 +388,7 @@ void DataSet::make(std::size_t image) {
                           views, masks));
   record["targets"] = sights_of(camera, picture, map, views, cctv);
   base::write_text(folder_.labels(image), dump_lines(record));
+  return record["reached"];
 }
 
 bool DataSet::finish() const {
@@ -401,8 +396,8 @@ bool DataSet::finish() const {
   Json coco = {
       {"images", Json::array()}, {"annotations", Json::array()}, {"categories", Json::array()}};
   for (std::size_t image = 0; image < recipe_.images; ++image) {
-    if (!is_done(image)) return false;
-    const Json known = labels(image);
+    const Json known = finished(image);
+    if (known.is_null()) return false;
     const std::string number = std::to_string(image);
     cameras[number] = known["scene_camera"];
     poses[number] = known["scene_gt"];
@@ -442,11 +437,10 @@ void run(const DatasetCall& call, const Common& common) {
     for (std::size_t k = 0; k < total; ++k) {
       report(k, total);
       const std::size_t image = numbers.first + k;
-      if (!set.is_done(image)) {
-        set.drop_lists();
-        set.make(image);
-      }
-      if (!set.reached(image)) noisy.push_back(image);
+      const Json known = set.finished(image);
+      if (known.is_null()) set.drop_lists();
+      const bool reached = known.is_null() ? set.make(image) : known["reached"].get<bool>();
+      if (!reached) noisy.push_back(image);
     }
   } catch (const Interrupt::Left&) {
     throw base::Error(base::Blame::Work, "dataset", "interrupted", {},

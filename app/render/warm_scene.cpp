@@ -6,6 +6,7 @@
 
 #include "app/console.h"
 #include "app/options.h"
+#include "app/parts/result_cache.h"
 #include "scenes/effects/light_groups.h"
 #include "scenes/read/scene_file.h"
 
@@ -63,7 +64,7 @@ void WarmScene::prepare(const RenderCall& call, const std::vector<const scenes::
   loaded.scene.warnings = warnings;
   decide_effects(loaded, wanted_effects(call, cameras));
   if (cameras.size() != 1) return check_input(loaded, *query, {cameras}, true, draws);
-  const View view(*cameras.front());
+  const std::pair view(cameras.front()->name, camera_cache_key(*cameras.front()).dump());
   const auto known = view_warnings_.find(view);
   if (known != view_warnings_.end()) {
     loaded.scene.warnings.insert(loaded.scene.warnings.end(), known->second.begin(),

@@ -3,12 +3,11 @@
 // Python module and for `console --serve`.
 #pragma once
 
-#include <array>
-#include <compare>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/call/render_call.h"
@@ -47,17 +46,8 @@ struct WarmScene {
  private:
   std::vector<std::uint64_t> shape_;      // digests of what `query` depends on; empty: a pose's
   std::optional<scenes::Scene> as_read_;  // while `loaded` has another pose
-  struct View {
-    explicit View(const scenes::Camera& camera)
-        : name(camera.name), numbers{camera.position.x, camera.position.y, camera.position.z,
-                                     camera.look_at.x,  camera.look_at.y,  camera.look_at.z,
-                                     camera.up.x,       camera.up.y,       camera.up.z,
-                                     camera.fov_deg} {}
-    std::string name;
-    std::array<double, 10> numbers;
-    auto operator<=>(const View&) const = default;
-  };
-  std::map<View, std::vector<std::string>> view_warnings_;  // of this scene
+  // Of this scene, by the name and the key of a camera.
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> view_warnings_;
 };
 
 }  // namespace earthshine::app

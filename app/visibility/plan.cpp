@@ -36,13 +36,13 @@ struct Pictures {
   std::vector<const scenes::Camera*> cameras;
   std::vector<raytrace::RenderOptions> options;
 };
-struct Forecast {
+struct CostEstimate {
   double solve_s = 0.0, memory_mib = 0.0;
   std::vector<double> picture_s;
 };
 
 // From a pilot of the pictures.
-Forecast forecast(const StudyPart& part, const Pictures& pictures, const Common& common) {
+CostEstimate estimate_cost(const StudyPart& part, const Pictures& pictures, const Common& common) {
   if (pictures.cameras.empty()) return {};
   const LoadedScene& basis = part.basis_scene;
   const radiosity::SolveOptions solver = study_solver(basis.scene, common);
@@ -54,7 +54,7 @@ Forecast forecast(const StudyPart& part, const Pictures& pictures, const Common&
                                static_cast<double>(pictures.cameras.size()));
   const studies::Pilot pilot = studies::expect_costs(
       {basis.world(*part.query), solver, sizes.row_entries}, pictures.cameras, pictures.options);
-  Forecast found;
+  CostEstimate found;
   found.memory_mib = studies::memory_needed(sizes).total() / 1048576.0;
   found.solve_s = studies::total_seconds(pilot.bill);
   double drawn = 0.0;
@@ -95,7 +95,7 @@ Json plan_of(const StudyPart& part, const std::filesystem::path& folder, const C
     pictures.cameras.push_back(camera.camera);
     pictures.options.push_back(options);
   }
-  const Forecast expected = forecast(part, pictures, common);
+  const CostEstimate expected = estimate_cost(part, pictures, common);
   std::size_t next = 0;
   for (Json& one : listed) {
     if (!one["found"].get<bool>()) one["seconds"] = expected.picture_s[next++];

@@ -59,7 +59,7 @@ const makePanel = (box) => {
   const noise = make("select", {}, ...["off", "frozen", "live"].map((word) => make("option", { value: word, textContent: word })));
   noise.addEventListener("change", () => changeState((to) => { to.noise = noise.value; }));
   row("Noise", noise);
-  const white = make("input", { type: "number", min: 1e-9, step: "any", placeholder: "auto" });
+  const white = make("input", { type: "number", min: 1e-9, step: "any", title: "empty: the picture’s own" });
   white.addEventListener("change", () =>
     changeState((to) => { to.white = white.value !== "" && white.value > 0 ? Number(white.value) : null; }));
   row("Clean white", white, "cd/m²");

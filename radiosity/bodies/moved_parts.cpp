@@ -54,11 +54,9 @@ MovedParts::MovedParts(const std::vector<Vec3>& then, const ClosedBodies& bodies
     }
     if (!stays) continue;
     const auto [low, high] = patches.box(i);
-    const Vec3 from = low - (margin_m + rounding_m), to = high + (margin_m + rounding_m);
-    unmoved_[i] = std::ranges::none_of(around, [&](const scenes::Box& box) {
-      return glm::all(glm::lessThanEqual(from, box.high)) &&
-             glm::all(glm::lessThanEqual(box.low, to));
-    });
+    const scenes::Box own{low - (margin_m + rounding_m), high + (margin_m + rounding_m)};
+    unmoved_[i] =
+        std::ranges::none_of(around, [&](const scenes::Box& box) { return own.meets(box); });
   }
   most_of_leaf_ = std::max<std::size_t>(1, items.size() / leaves);
   if (!items.empty()) build(items, 0, items.size());

@@ -62,9 +62,9 @@ void RowCaster::cast(std::uint32_t patch, HitCounter& counter, Band& band) const
   std::vector<std::uint32_t> near;
   const std::size_t first_part = band.sky_illuminance.size();
   band.sky_illuminance.resize(first_part + sky_parts_, Rgb(0.0));
-  const bool knows_covers = leave_out_covered_ && may_be_covered(patch);
-  if (knows_covers) near = bodies_near(patch);
-  if (!trace(patch, sender, leave_out_covered_ && !knows_covers, near, row, counter, band)) {
+  const bool search_first = leave_out_covered_ && may_be_covered(patch);
+  if (search_first) near = bodies_near(patch);
+  if (!trace(patch, sender, leave_out_covered_ && !search_first, near, row, counter, band)) {
     counter.clear();
     band.backs_met.clear();
     band.missed.clear();

@@ -22,7 +22,7 @@ constexpr int flux_rays = 1 << 12, direct_points = 4;
 constexpr double most_ray_ratio = 8.0;    // passes with at least 1/8 of the rays so far count
 constexpr double most_times_more = 16.0;  // the rays so far
 constexpr double least_power = 0.05;      // of the rays: an error may seem to rise by chance
-constexpr double least_told = 1e-3;       // least error in the fit, over the wanted error
+constexpr double least_fitted = 1e-3;     // least error in the fit, over the wanted error
 constexpr double smallest_edge = 2.0 / 3.0, largest_edge = 2.0;  // over the edge for the measured
                                                                  // error
 
@@ -56,7 +56,7 @@ bool is_far_off(const std::vector<PassError>& passes, double wanted) {
     if (most_ray_ratio * pass.rays < passes.back().rays) continue;
     fewest = std::min(fewest, pass.rays / passes.back().rays);
     const double rays = std::log(pass.rays / passes.back().rays);
-    const double error = std::log(std::max(pass.error, least_told * wanted));
+    const double error = std::log(std::max(pass.error, least_fitted * wanted));
     count += 1.0, x += rays, y += error, xx += rays * rays, xy += rays * error;
   }
   const double spread = count * xx - x * x;

@@ -101,10 +101,7 @@ class Coincidence {
     for (std::uint32_t t = 0; t < scene_.triangles.size(); ++t) {
       if (material(t).has_holes()) continue;
       const auto [low, high] = box_of(t);
-      if (!is_moved_.empty() && (glm::any(glm::greaterThan(Vec3(low), around.high)) ||
-                                 glm::any(glm::lessThan(Vec3(high), around.low)))) {
-        continue;
-      }
+      if (!is_moved_.empty() && !around.meets({Vec3(low), Vec3(high)})) continue;
       boxes.push_back({low, high, parts_.of[t], t});
     }
     join_boxes(std::move(boxes), [&](std::uint32_t a, std::uint32_t b) {

@@ -98,13 +98,13 @@ class Tree {
       const Node &a = nodes_[m], &b = nodes_[n];
       // Skips pairs of nodes of the same object.
       if (a.object == b.object && a.object != several) continue;
-      if (!overlap(a.box, b.box)) continue;
+      if (!a.box.meets(b.box)) continue;
       if (a.second == 0 && b.second == 0) {
         for (std::size_t i = a.begin; i < a.end; ++i) {
           for (std::size_t j = m == n ? i + 1 : b.begin; j < b.end; ++j) {
             const std::uint32_t s = order_[i], t = order_[j];
             if (scene_.triangles[s].object == scene_.triangles[t].object) continue;
-            if (overlap(boxes_[s], boxes_[t]) && !visit(s, t)) return;
+            if (boxes_[s].meets(boxes_[t]) && !visit(s, t)) return;
           }
         }
       } else if (m == n) {
@@ -125,11 +125,6 @@ class Tree {
     std::uint32_t first = 0, second = 0;  // 0: a leaf
     std::uint32_t object = several;       // if all its triangles have the same object
   };
-
-  static bool overlap(const Box& a, const Box& b) {
-    return glm::all(glm::lessThanEqual(a.low, b.high)) &&
-           glm::all(glm::lessThanEqual(b.low, a.high));
-  }
 
   std::uint32_t build(std::size_t begin, std::size_t end) {
     Node node{{}, begin, end};

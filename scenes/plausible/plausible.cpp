@@ -89,7 +89,7 @@ void name_darkness(const Scene& scene, Texts& found) {
 
 }  // namespace
 
-std::optional<std::string> wide_pixels_warning(double fx, double fy) {
+std::optional<std::string> non_square_pixels_warning(double fx, double fy) {
   if (std::abs(fx / fy - 1.0) <= 0.01) return std::nullopt;
   return fmt::format(
       "has pixels {:.4g} times as wide as high, and the CCTV chain shows them as squares; give "
@@ -116,7 +116,7 @@ Texts implausible_input(const Scene& scene, const RayQuery& query, const SceneUs
   add(implausible_views(scene, views));
   for (const Camera* camera : cameras) {
     if (camera->cctv.empty() || !camera->intrinsics) continue;
-    const auto text = wide_pixels_warning((*camera->intrinsics)[0], (*camera->intrinsics)[1]);
+    const auto text = non_square_pixels_warning((*camera->intrinsics)[0], (*camera->intrinsics)[1]);
     if (text) found.push_back(fmt::format("camera {} {}", in_quotes(camera->name), *text));
   }
   name_empty_materials(scene, found);

@@ -22,7 +22,7 @@ struct SceneUse {
 };
 
 // Of pixels that are not square within 1 %, which a CCTV chain shows as squares; fx, fy: of K.
-[[nodiscard]] std::optional<std::string> wide_pixels_warning(double fx, double fy);
+[[nodiscard]] std::optional<std::string> non_square_pixels_warning(double fx, double fy);
 
 // One line each, with a remedy; docs/scene-format.md lists them under "Warnings about likely
 // mistakes". Casts 576 rays per camera, and up to 512 for each lamp and each emitting object;

@@ -10,14 +10,10 @@
 #include "scenes/text/message_text.h"
 #include "scenes/text/table_reader.h"
 #include "scenes/time/linkage.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::scenes {
 namespace {
-
-Pose inverse(const Pose& pose) {
-  const glm::dmat3 back = glm::transpose(pose.rotation);
-  return {back, -(back * pose.offset_m)};
-}
 
 // Rigid motion from the old pose to the new one: P' shift P^-1, P and P' the poses of the joint.
 class Motions {
@@ -39,12 +35,13 @@ class Motions {
 
   // The new pose of what hangs on the joint; empty: on none.
   [[nodiscard]] Pose pose_of(const std::string& joint) const {
-    return joint.empty() ? Pose{} : after_[index_of(joint)].pose;
+    return joint.empty() ? Pose{} : after_[joint_index(*scene_.linkage, joint)].pose;
   }
 
   [[nodiscard]] Pose of_joint(const std::string& joint, const Vec3& shift_m) const {
     if (joint.empty()) return {glm::dmat3(1.0), shift_m};
-    const Pose &before = before_[index_of(joint)].pose, &after = after_[index_of(joint)].pose;
+    const Pose &before = before_[joint_index(*scene_.linkage, joint)].pose,
+               &after = after_[joint_index(*scene_.linkage, joint)].pose;
     if (before == after) return {glm::dmat3(1.0), after.rotation * shift_m};
     return after * Pose{glm::dmat3(1.0), shift_m} * inverse(before);
   }
@@ -60,12 +57,6 @@ class Motions {
   }
 
  private:
-  [[nodiscard]] std::size_t index_of(const std::string& joint) const {
-    const auto& joints = scene_.linkage->joints;
-    return static_cast<std::size_t>(std::ranges::find(joints, joint, &Joint::name) -
-                                    joints.begin());
-  }
-
   const Scene& scene_;
   const PoseChange& change_;
   std::shared_ptr<const Linkage> linkage_;
@@ -81,15 +72,8 @@ void check_range(const Vec3& p, const std::string& name) {
 }
 
 void move_object(Scene& scene, const Object& object, const Pose& motion) {
-  std::uint32_t low = ~0U, high = 0;
-  for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
-    for (const std::uint32_t v : scene.triangles[object.first_triangle + k].vertex) {
-      low = std::min(low, v);
-      high = std::max(high, v);
-    }
-  }
-  // An object's vertices are its own and follow one another.
-  for (std::uint32_t v = low; v <= high; ++v) {
+  const auto [first, count] = vertices_of(scene, object);
+  for (std::uint32_t v = first; v < first + count; ++v) {
     scene.vertices[v] = motion.point(scene.vertices[v]);
     check_range(scene.vertices[v], object.name);
   }

@@ -61,22 +61,7 @@ void check_alone(const Scene& scene, const TableReader& table, const Instance& i
   }
 }
 
-struct Vertices {
-  std::uint32_t first = 0, count = 0;
-};
-Vertices vertices_of(const Scene& scene, std::uint32_t number) {
-  const Object& object = scene.objects[number];
-  std::uint32_t low = ~0U, high = 0;
-  for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
-    for (const std::uint32_t v : scene.triangles[object.first_triangle + t].vertex) {
-      low = std::min(low, v);
-      high = std::max(high, v);
-    }
-  }
-  return {low, high - low + 1};
-}
-
-void copy_vertices(Scene& scene, const TableReader& table, const Vertices& of,
+void copy_vertices(Scene& scene, const TableReader& table, const VertexRange& of,
                    const Instance& instance) {
   const auto copy = [&](auto& list, const auto& otherwise) {
     if (list.empty()) return;
@@ -114,7 +99,7 @@ void add(Scene& scene, const TableReader& table, Instance instance, double unit_
   MaterialChoice choice(scene, table, none, own_material_count);
 
   const std::uint32_t count = object.triangle_count, from = object.first_triangle;
-  const Vertices vertices = vertices_of(scene, instance.object);
+  const VertexRange vertices = vertices_of(scene, scene.objects[instance.object]);
   instance.first_vertex = static_cast<std::uint32_t>(scene.vertices.size());
   copy_vertices(scene, table, vertices, instance);
 
@@ -183,7 +168,7 @@ void InstanceReader::finish(Scene& scene, double unit_m, const JointPoses& joint
       table.fail("instance_of", "makes the scene too large",
                  fmt::format("it has at most {} triangles", max_scene_triangles));
     }
-    const Vertices of_object = vertices_of(scene, object);
+    const VertexRange of_object = vertices_of(scene, scene.objects[object]);
     vertices += of_object.count;
   }
   if (waiting_.empty()) return;

@@ -104,7 +104,7 @@ double visible_sun_share(const Scene& scene) {
   if (!scene.earth) return 1.0;
   const SunAndEarth discs = sun_and_earth(scene);
   if (!discs.touch()) return discs.separation < discs.limb ? 0.0 : 1.0;
-  return std::clamp(discs.left(discs.radius) / disc_solid_angle(discs.radius), 0.0, 1.0);
+  return discs.sun_share();
 }
 
 SunDirections::SunDirections(const Scene& scene)

@@ -3,6 +3,8 @@
 // radians; discs up to a hemisphere.
 #pragma once
 
+#include <algorithm>
+
 namespace earthshine::scenes {
 
 // Solid angle of one disc, sr.
@@ -24,6 +26,10 @@ struct SunAndEarth {
   // Solid angle of the part of the Sun within `rim` of its middle that the Earth does not hide.
   [[nodiscard]] double left(double rim) const {
     return disc_solid_angle(rim) - shared_solid_angle(rim, limb, separation);
+  }
+  // Of the Sun's disc, where the two touch.
+  [[nodiscard]] double sun_share() const {
+    return std::clamp(left(radius) / disc_solid_angle(radius), 0.0, 1.0);
   }
   [[nodiscard]] bool touch() const {
     return separation < radius + limb && separation + radius > limb;

@@ -133,6 +133,11 @@ std::vector<JointState> Linkage::at(const Mission* mission, Instant t, const Vec
   return found;
 }
 
+std::size_t joint_index(const Linkage& linkage, std::string_view name) {
+  const auto found = std::ranges::find(linkage.joints, name, &Joint::name);
+  return static_cast<std::size_t>(found - linkage.joints.begin());
+}
+
 std::vector<JointState> joints_now(const Scene& scene) {
   const Mission* const mission = mission_of(scene);
   return scene.linkage->at(mission, mission != nullptr ? mission->moment : Instant(),

@@ -34,6 +34,10 @@ struct Pose {
 [[nodiscard]] inline Pose operator*(const Pose& a, const Pose& b) {
   return {a.rotation * b.rotation, a.point(b.offset_m)};
 }
+[[nodiscard]] inline Pose inverse(const Pose& pose) {
+  const glm::dmat3 back = glm::transpose(pose.rotation);
+  return {back, -(back * pose.offset_m)};
+}
 // By the right-hand rule; axis: unit.
 [[nodiscard]] Pose turn_about(const Vec3& pivot_m, const Vec3& axis, double angle_deg);
 
@@ -100,6 +104,8 @@ struct Linkage {
                                            const Vec3& sun) const;
 };
 
+// Index of the joint or track of that name, which the linkage has.
+[[nodiscard]] std::size_t joint_index(const Linkage& linkage, std::string_view name);
 // Of a scene with a linkage, at its own moment.
 [[nodiscard]] std::vector<JointState> joints_now(const Scene& scene);
 // For people: "elbow 30 deg, cargo at (1.5, 0, 20) m".

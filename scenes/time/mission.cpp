@@ -99,7 +99,7 @@ double sunlit_share(const Mission& mission, const Vec3& moon, const Vec3& sun, I
   const double sun_rad = std::asin(sun_radius_m / glm::length(sun - moon));
   const SunAndEarth discs{sun_rad, limb_rad(mission, {moon, {}}, direction, t),
                           angle_between(direction, -glm::normalize(moon))};
-  return std::max(0.0, discs.left(sun_rad)) / disc_solid_angle(sun_rad);
+  return discs.sun_share();
 }
 
 // The Sun's values at one astronomical unit are the defaults: illuminance by the inverse square.

@@ -149,21 +149,6 @@ TEST(Srgb, EveryByteBeginsWhereTheCurveRoundsToIt) {
   EXPECT_EQ(srgb_byte(7.0), 255);
 }
 
-// White and black by turns, 2 bytes a pixel: a pixel of half the width covers both, one of 2/3 the
-// width all of the first and half of the second, or the other way round.
-TEST(Srgb, ResizedPixelsAreMeansOfTheLinearSignal) {
-  const std::vector<std::uint8_t> row = {255, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255};
-  EXPECT_EQ(resized_srgb(row, 2, {6, 1}, {6, 1}), row);
-  const std::uint8_t half = srgb_byte(0.5), third = srgb_byte(1.0 / 3.0),
-                     most = srgb_byte(2.0 / 3.0);
-  EXPECT_EQ(resized_srgb(row, 2, {6, 1}, {3, 1}), std::vector<std::uint8_t>(6, half));
-  EXPECT_EQ(resized_srgb(row, 2, {6, 1}, {4, 1}),
-            (std::vector<std::uint8_t>{most, third, most, third, third, most, third, most}));
-  EXPECT_EQ(resized_srgb({255, 0}, 1, {1, 2}, {2, 4}),
-            (std::vector<std::uint8_t>{255, 255, 255, 255, 0, 0, 0, 0}));
-  EXPECT_EQ(resized_srgb({255, 0}, 1, {2, 1}, {1, 3}), std::vector<std::uint8_t>(3, half));
-}
-
 // At white 1 - 0.4 exp(-(1 - 0.6) / 0.4) = 1 - 0.4 / e = 0.8528, at twice white 1 - 0.4 exp(-3.5) =
 // 0.9879; linear below 0.6 of white.
 TEST(Tone, ShoulderIsStraightBelowAndNeverClips) {

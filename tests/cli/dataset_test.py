@@ -405,6 +405,23 @@ class Dataset(program.Case):
         self.done("dataset", "set.toml", "-o", "out", "-q", "--images", "0-1")
         self.assertEqual([path.read_bytes() for path in pictures], before)
 
+    def test_lists_are_of_whole_images_and_a_missed_error_is_named_again(self):
+        self.write("set.toml", DATASET.replace("images = 4", "images = 2"))
+        self.done("dataset", "set.toml", "-o", "out", "-q")
+        (self.folder / "out/train/000000/rgb/000001.png").unlink()
+        lists = [self.folder / "out/train/000000/scene_gt.json", self.folder / "out/annotations.json"]
+        for path in lists:
+            path.unlink()
+        self.done("dataset", "set.toml", "-o", "out", "-q", "--images", "0")
+        self.assertFalse(any(path.exists() for path in lists))
+        # An image that was made before without its error.
+        record = self.folder / "out/images/000000.json"
+        self.assertIn('"reached": true', record.read_text())
+        record.write_text(record.read_text().replace('"reached": true', '"reached": false'))
+        run = self.run_program("dataset", "set.toml", "-o", "out", "-q")
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.says(run.stderr, "do not have their error: 0")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -104,6 +104,17 @@ class Serve(Served):
         self.assertEqual(status, 400, words[:200])
         self.says(words.decode(), "light.right.position", "not in the scene")
 
+    def test_views_are_checked_at_each_pose(self):
+        """A body that is moved over a camera, or a camera that is moved into a body, is refused as render refuses it."""
+        inside = {"position": [0, 0, 0.3], "look_at": [1, 0, 0.3], "up": [0, 0, 1], "fov_deg": 40}
+        for level in (0, 1):
+            self.picture(level=level)
+            for more in ({"set": {"object.box.translate": [3, -3, 1.7]}}, {"view": inside}):
+                status, words = self.ask(body=json.dumps({"camera": "A", "columns": 24, "rows": 20, "level": level, **more}))
+                self.assertEqual(status, 400, (level, more))
+                self.says(words.decode(), '"A"', '"box"')
+            self.picture(level=level)
+
     def test_a_port_in_use(self):
         run = self.run_program("console", "bay.toml", "--serve", "--port", self.port)
         self.assertEqual(run.returncode, 2, run.stdout)

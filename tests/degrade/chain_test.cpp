@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/tone.h"
 #include "degrade/settings/presets.h"
 #include "tests/degrade/fields.h"
 
@@ -245,6 +246,33 @@ TEST(Chain, SinglePointOfLightStaysInItsPlace) {
   const auto brightest = std::max_element(viewed.begin(), viewed.end()) - viewed.begin();
   EXPECT_EQ(brightest / 900, 301);  // middle pixel of resel row 100
   EXPECT_EQ(brightest % 900, 601);
+}
+
+// White and black by turns, 2 channels: a pixel of half the width covers both, one of 2/3 the width
+// all of the first and half of the second, or the other way round.
+TEST(Chain, AResizedScreenHasMeansOfTheLinearSignal) {
+  const auto resized = [](std::vector<std::uint8_t> bytes, int channels, int columns, int rows,
+                          int new_columns, int new_rows) {
+    Result result;
+    result.columns = columns;
+    result.rows = rows;
+    result.channels = channels;
+    result.pixels = std::move(bytes);
+    resize_screen(result, new_columns, new_rows);
+    EXPECT_EQ(result.columns, new_columns);
+    EXPECT_EQ(result.rows, new_rows);
+    return result.pixels;
+  };
+  using Bytes = std::vector<std::uint8_t>;
+  const Bytes row = {255, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255};
+  EXPECT_EQ(resized(row, 2, 6, 1, 6, 1), row);
+  const std::uint8_t half = base::srgb_byte(0.5), third = base::srgb_byte(1.0 / 3.0),
+                     most = base::srgb_byte(2.0 / 3.0);
+  EXPECT_EQ(resized(row, 2, 6, 1, 3, 1), Bytes(6, half));
+  EXPECT_EQ(resized(row, 2, 6, 1, 4, 1),
+            (Bytes{most, third, most, third, third, most, third, most}));
+  EXPECT_EQ(resized({255, 0}, 1, 1, 2, 2, 4), (Bytes{255, 255, 255, 255, 0, 0, 0, 0}));
+  EXPECT_EQ(resized({255, 0}, 1, 2, 1, 1, 3), Bytes(3, half));
 }
 
 }  // namespace
