@@ -63,6 +63,11 @@ std::string meant_number(std::string text) {
 
 }  // namespace
 
+CLI::App* add_subcommand(CLI::App& parent, const std::string& name,
+                         const std::string& description) {
+  return parent.add_subcommand(name, description);
+}
+
 void add_scene(CLI::App& command, SceneInput& input) {
   command.add_option("SCENE", input.path, "Scene file (TOML)")->required()->type_name("");
   may_repeat(command.add_option("--set", input.overrides,

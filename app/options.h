@@ -17,6 +17,9 @@
 
 namespace earthshine::app {
 
+// The one place that constructs commands, so that few files instantiate CLI11's classes.
+CLI::App* add_subcommand(CLI::App& parent, const std::string& name, const std::string& description);
+
 // SCENE and --set.
 void add_scene(CLI::App& command, SceneInput& input);
 // Those and --error.

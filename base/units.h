@@ -18,6 +18,8 @@ using Vec3 = glm::dvec3;
 namespace base {
 
 inline constexpr double pi = std::numbers::pi;
+
+[[nodiscard]] constexpr double squared(double x) { return x * x; }
 inline constexpr double earth_radius_m = 6371e3;
 
 // Y = 0.2126 R + 0.7152 G + 0.0722 B (Rec. 709).

@@ -37,6 +37,18 @@ serve_module(earthshine_common)
 target_link_libraries(earthshine_common PRIVATE earthshine_flags fmt::fmt glm::glm)
 target_precompile_headers(earthshine_common PRIVATE ${earthshine_common_headers})
 
+# Files of a folder are compiled together, so that they read headers and instantiate templates once: 0.6 of the
+# seconds. Their local names differ.
+function(compile_by_folder target)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    get_filename_component(folder ${source} DIRECTORY)
+    string(REPLACE "/" "_" folder "files_${folder}")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder})
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${EARTHSHINE_UNITY} UNITY_BUILD_MODE GROUP)
+endfunction()
+
 # add_layer(NAME USES <layers> LIBRARIES <public> PRIVATE_LIBRARIES <owned here> SOURCES <files>)
 function(add_layer name)
   cmake_parse_arguments(LAYER "" "" "USES;LIBRARIES;PRIVATE_LIBRARIES;SOURCES" ${ARGN})
@@ -52,6 +64,7 @@ function(add_layer name)
     PUBLIC ${LAYER_USES} ${LAYER_LIBRARIES}
     PRIVATE earthshine_flags fmt::fmt ${LAYER_PRIVATE_LIBRARIES})
   target_precompile_headers(earthshine_${name} REUSE_FROM earthshine_common)
+  compile_by_folder(earthshine_${name})
 endfunction()
 
 # What tests of layers share: their headers, compiled once. A local name may be that of another file's constant:

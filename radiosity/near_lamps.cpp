@@ -49,7 +49,7 @@ double radius(const scenes::Lamp& lamp) {
   return scenes::is_wide(lamp.kind) ? scenes::row_of(lamp.kind).radius(lamp) : 0.0;
 }
 
-constexpr double rounding = 1e-6;               // of small angles computed from cosines, rad
+constexpr double angle_rounding = 1e-6;         // of small angles computed from cosines, rad
 constexpr double most_beam_share = 1.0 / 32.0;  // of a beam's flux, on one patch
 
 // Share of the beam's flux on the patch, without occlusion.
@@ -62,7 +62,7 @@ double share_on(const scenes::Beam& beam, const std::array<Vec3, 4>& corner, con
   const double distance = glm::length(middle);
   if (distance > radius) {
     const double off = std::acos(std::clamp(glm::dot(middle, beam.axis) / distance, -1.0, 1.0));
-    if (off > beam.half_angle_rad + std::asin(radius / distance) + rounding) return 0.0;
+    if (off > beam.half_angle_rad + std::asin(radius / distance) + angle_rounding) return 0.0;
   }
   double share = 0.0;
   for (const scenes::Beam::Ray& ray : beam.rays) {

@@ -144,8 +144,8 @@ std::vector<int> read_counts(const std::string& option, const std::string& text,
 }  // namespace
 
 Command add_study_accuracy(CLI::App& study) {
-  CLI::App* parser = study.add_subcommand(
-      "accuracy", "Cost of a smaller error, by radiosity, distributed lights and paths");
+  CLI::App* parser = add_subcommand(
+      study, "accuracy", "Cost of a smaller error, by radiosity, distributed lights and paths");
   const auto call = std::make_shared<AccuracyCall>();
   add_study_options(*parser, *call);
   add_part_options(*parser, call->part);

@@ -122,8 +122,9 @@ void run(const CertifyCall& call, const Common& common) {
 }  // namespace
 
 Command add_certify(CLI::App& degrade) {
-  CLI::App* parser = degrade.add_subcommand(
-      "certify", "Measures a camera on a bench of charts: a datasheet, each number beside its law");
+  CLI::App* parser = add_subcommand(
+      degrade, "certify",
+      "Measures a camera on a bench of charts: a datasheet, each number beside its law");
   const auto call = std::make_shared<CertifyCall>();
   parser
       ->add_option("CAMERA", call->camera,

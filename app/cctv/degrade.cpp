@@ -233,7 +233,7 @@ void run(const DegradeCall& call, const Common& common) {
 
 std::vector<Command> add_degrade(CLI::App& program) {
   CLI::App* parser =
-      program.add_subcommand("degrade", "Shows a linear EXR as a CCTV camera and its monitor do");
+      add_subcommand(program, "degrade", "Shows a linear EXR as a CCTV camera and its monitor do");
   const auto call = std::make_shared<DegradeCall>();
   parser
       ->add_option("IN", call->tape.inputs,

@@ -271,8 +271,8 @@ void run(const CompareCall& call, const Common& common) {
 }  // namespace
 
 Command add_study_compare(CLI::App& study) {
-  CLI::App* parser = study.add_subcommand(
-      "compare", "Radiosity against distributed lights and direct light, in one view");
+  CLI::App* parser = add_subcommand(
+      study, "compare", "Radiosity against distributed lights and direct light, in one view");
   const auto call = std::make_shared<CompareCall>();
   add_study_options(*parser, *call);
   add_camera_option(*parser, *call);

@@ -161,9 +161,9 @@ void run(const ConsoleCall& call, const Common& given) {
 }  // namespace
 
 Command add_console(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand("console",
-                                            "A page on which to turn the lamps, the Sun and the "
-                                            "cameras of a scene or of a finished study");
+  CLI::App* parser = add_subcommand(program, "console",
+                                    "A page on which to turn the lamps, the Sun and the "
+                                    "cameras of a scene or of a finished study");
   const auto call = std::make_shared<ConsoleCall>();
   add_scene_options(*parser, call->study.scene);
   parser->get_option("SCENE")->description("Scene file (TOML), or the folder of a finished study");

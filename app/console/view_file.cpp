@@ -16,6 +16,7 @@
 #include "app/console/pack.h"
 #include "app/console/page.h"
 #include "app/console/view_solution.h"
+#include "app/options.h"
 #include "app/output.h"
 #include "app/report/text.h"
 #include "base/files/exr_file.h"
@@ -169,8 +170,8 @@ void run(const ViewCall& call, const Common& common) {
 }  // namespace
 
 Command add_view(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand(
-      "view", "A picture or a solution as one HTML page: layers, false colours, values");
+  CLI::App* parser = add_subcommand(
+      program, "view", "A picture or a solution as one HTML page: layers, false colours, values");
   const auto call = std::make_shared<ViewCall>();
   parser->add_option("FILE", call->input, "EXR file, or HDF5 file of a solution")
       ->required()

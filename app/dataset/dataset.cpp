@@ -325,6 +325,18 @@ std::vector<Masks> DataSet::write_masks(const std::vector<studies::TargetView>& 
   return masks;
 }
 
+Json drawn_json(const Draw& draw, const scenes::Camera& camera) {
+  Json drawn = {{"set", draw.overrides},
+                {"camera",
+                 {{"name", camera.name},
+                  {"position_m", to_json(camera.position)},
+                  {"look_at_m", to_json(camera.look_at)},
+                  {"up", to_json(camera.up)}}},
+                {"seed", draw.seed}};
+  if (draw.white_cd_m2) drawn["white_cd_m2"] = *draw.white_cd_m2;
+  return drawn;
+}
+
 bool DataSet::make(std::size_t image) {
   const Draw draw = draw_values(recipe_, image);
   Common common = common_;
@@ -367,14 +379,7 @@ bool DataSet::make(std::size_t image) {
 
   const raytrace::CameraModel model = raytrace::make_camera_model(camera, map.columns, map.rows);
   Json record = {{"key", key_}, {"files", digests_of(loaded.scene.files)}, {"image", image}};
-  record["drawn"] = {{"set", draw.overrides},
-                     {"camera",
-                      {{"name", camera.name},
-                       {"position_m", to_json(camera.position)},
-                       {"look_at_m", to_json(camera.look_at)},
-                       {"up", to_json(camera.up)}}},
-                     {"seed", draw.seed}};
-  if (draw.white_cd_m2) record["drawn"]["white_cd_m2"] = *draw.white_cd_m2;
+  record["drawn"] = drawn_json(draw, camera);
   record["reached"] = drawn.limit == raytrace::Limit::None;
   record["columns"] = map.columns;
   record["rows"] = map.rows;
@@ -463,8 +468,8 @@ void run(const DatasetCall& call, const Common& common) {
 }  // namespace
 
 Command add_dataset(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand(
-      "dataset",
+  CLI::App* parser = add_subcommand(
+      program, "dataset",
       "Pictures with depth, masks and poses for training, with drawn cameras and lights");
   const auto call = std::make_shared<DatasetCall>();
   parser->add_option("DATASET", call->recipe, "What is drawn, and between what bounds (TOML)")

@@ -111,8 +111,9 @@ void refuse_to_merge(const fs::path& folder, const std::vector<MissingWork>& mis
 }
 
 Command add_merge(CLI::App& program, const RunCall& run_call) {
-  CLI::App* parser = program.add_subcommand(
-      "merge", "What the parts of a call (--part) have left, as one process would have written it");
+  CLI::App* parser = add_subcommand(
+      program, "merge",
+      "What the parts of a call (--part) have left, as one process would have written it");
   const auto call = std::make_shared<MergeCall>();
   parser
       ->add_option("DIR", call->folder,

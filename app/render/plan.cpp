@@ -261,8 +261,8 @@ std::string text_of(const Json& report) {
 }  // namespace
 
 Command add_plan(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand(
-      "plan", "Which effects will run, which not and why, and how many rays");
+  CLI::App* parser = add_subcommand(program, "plan",
+                                    "Which effects will run, which not and why, and how many rays");
   const auto call = std::make_shared<RenderCall>();
   add_scene_options(*parser, call->scene);
   add_picture_options(*parser, *call);

@@ -326,7 +326,7 @@ void run(RenderCall call, const Common& common) {
 }  // namespace
 
 Command add_render(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand("render", "A camera's view: EXR, PNG, CCTV picture");
+  CLI::App* parser = add_subcommand(program, "render", "A camera's view: EXR, PNG, CCTV picture");
   const auto call = std::make_shared<RenderCall>();
   add_scene_options(*parser, call->scene);
   const auto file_option = [parser](const char* name, std::string& path, const char* help) {

@@ -289,7 +289,7 @@ radiosity::SolveOptions solve_options(const scenes::Scene& scene, const Common& 
 }
 
 Command add_solve(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand("solve", "Radiosity alone: where the light goes");
+  CLI::App* parser = add_subcommand(program, "solve", "Radiosity alone: where the light goes");
   const auto call = std::make_shared<SolveCall>();
   add_scene_options(*parser, call->scene);
   parser

@@ -39,8 +39,8 @@ StudyResults read_study(const fs::path& folder) {
 }
 
 Command add_report(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand(
-      "report", "Draw a study's report.html anew, from the study.json in its folder");
+  CLI::App* parser = add_subcommand(
+      program, "report", "Draw a study's report.html anew, from the study.json in its folder");
   const auto call = std::make_shared<ReportCall>();
   parser->add_option("DIR", call->folder, "The study's folder")->type_name("")->required();
   parser->add_flag("--plain", call->plain, "Without the script: no plots, no sliders");

@@ -90,8 +90,9 @@ studies::StudyFile study_of(const StudyCall& call, const std::vector<std::string
 }
 
 std::vector<Command> add_study(CLI::App& program) {
-  CLI::App* study = program.add_subcommand(
-      "study", "Questions answered about a scene: visibility, orbit, compare, accuracy, run");
+  CLI::App* study =
+      add_subcommand(program, "study",
+                     "Questions answered about a scene: visibility, orbit, compare, accuracy, run");
   study->require_subcommand(1);
   return {{study, {}},
           add_study_visibility(*study),

@@ -67,8 +67,9 @@ std::string text_of(const scenes::PhongFits& fits, scenes::ReflectanceNoise nois
 }  // namespace
 
 Command add_fit_phong(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand(
-      "fit-phong", "Phong's k_d, k_s and n from measured reflectance against off-specular angle");
+  CLI::App* parser =
+      add_subcommand(program, "fit-phong",
+                     "Phong's k_d, k_s and n from measured reflectance against off-specular angle");
   const auto call = std::make_shared<FitCall>();
   parser->add_option("DATA", call->path, "CSV file: angle in degrees, reflectance factor")
       ->required()

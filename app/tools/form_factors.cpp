@@ -276,7 +276,7 @@ Json form_factors_json(LoadedScene& loaded, FactorMethod method, bool raw, const
 
 Command add_form_factors(CLI::App& program) {
   CLI::App* parser =
-      program.add_subcommand("form-factors", "Form factors between objects, and to the sky");
+      add_subcommand(program, "form-factors", "Form factors between objects, and to the sky");
   const auto call = std::make_shared<FactorsCall>();
   add_scene_options(*parser, call->scene);
   parser

@@ -226,7 +226,7 @@ Json report_of(const LoadedScene& loaded) {
 
 Command add_inspect(CLI::App& program) {
   CLI::App* parser =
-      program.add_subcommand("inspect", "Lists the contents of a scene file, with warnings");
+      add_subcommand(program, "inspect", "Lists the contents of a scene file, with warnings");
   const auto call = std::make_shared<InspectCall>();
   add_scene(*parser, call->scene);
   parser->add_flag("--json", call->json, "JSON on standard output");

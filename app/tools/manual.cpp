@@ -180,13 +180,14 @@ using Writer = std::string (*)(const CLI::App& program);
 }  // namespace
 
 Command add_manual(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand("manual", "The man page: earthshine manual | man -l -");
+  CLI::App* parser =
+      add_subcommand(program, "manual", "The man page: earthshine manual | man -l -");
   return {parser, [&program](const Common&) { print(manual(program)); }};
 }
 
 Command add_completion(CLI::App& program) {
   CLI::App* parser =
-      program.add_subcommand("completion", "What a shell completes of a call, as its script");
+      add_subcommand(program, "completion", "What a shell completes of a call, as its script");
   const auto writer = std::make_shared<Writer>(bash);
   add_choice<Writer, Writer>(*parser, "SHELL", *writer,
                              {{"bash", bash}, {"zsh", zsh}, {"fish", fish}}, "bash, zsh or fish")

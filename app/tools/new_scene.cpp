@@ -246,8 +246,9 @@ void run(const NewCall& call, const Common& common) {
 }  // namespace
 
 Command add_new(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand(
-      "new", "A commented scene file to begin with, with the parts and materials of meshes");
+  CLI::App* parser = add_subcommand(
+      program, "new",
+      "A commented scene file to begin with, with the parts and materials of meshes");
   const auto call = std::make_shared<NewCall>();
   parser->add_option("SCENE", call->scene, "Scene file to write (TOML)")->required()->type_name("");
   parser->add_option("MESH", call->meshes, "OBJ, glTF, GLB, PLY or STL files; none: two shapes")

@@ -148,8 +148,8 @@ void run(const RelightCall& call, const Common& common) {
 }  // namespace
 
 Command add_relight(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand(
-      "relight", "Other lamp settings of a picture with a layer per light group, at once");
+  CLI::App* parser = add_subcommand(
+      program, "relight", "Other lamp settings of a picture with a layer per light group, at once");
   const auto call = std::make_shared<RelightCall>();
   parser->add_option("FRAME", call->input, "EXR file that render --per-light wrote")
       ->required()

@@ -124,15 +124,16 @@ void run_file(const FileCall& call, const Common& common) {
 
 Command add_study_visibility(CLI::App& study) {
   CLI::App* parser =
-      study.add_subcommand("visibility", "How well each camera sees each target of the scene");
+      add_subcommand(study, "visibility", "How well each camera sees each target of the scene");
   const auto call = std::make_shared<VisibilityCall>();
   add_options(*parser, *call);
   return {parser, [call](const Common& common) { run_visibility(*call, common); }};
 }
 
 Command add_study_orbit(CLI::App& study) {
-  CLI::App* parser = study.add_subcommand(
-      "orbit", "How well each camera sees each target along the scene's orbit, from one solution");
+  CLI::App* parser = add_subcommand(
+      study, "orbit",
+      "How well each camera sees each target along the scene's orbit, from one solution");
   const auto call = std::make_shared<OrbitCall>();
   add_options(*parser, *call);
   add_whole_number(
@@ -147,7 +148,7 @@ Command add_study_orbit(CLI::App& study) {
 
 Command add_study_run(CLI::App& study) {
   CLI::App* parser =
-      study.add_subcommand("run", "A study file: scenes, cameras, targets, lamps, orbit, wishes");
+      add_subcommand(study, "run", "A study file: scenes, cameras, targets, lamps, orbit, wishes");
   const auto call = std::make_shared<FileCall>();
   parser->add_option("STUDY", call->file, "Study file (TOML)")->required()->type_name("");
   parser->add_option("-o,--output", call->folder, "Folder for the results; made if it is not there")

@@ -211,26 +211,25 @@ void add_lines(Plane& out, const Plane& in, std::size_t width, const AxisMap& ma
   });
 }
 
-Covariance filtered_across(const Covariance& noise, const AxisMap& full) {
-  double largest = 0.0;
-  for (const double weight : full.weight) largest = std::max(largest, std::abs(weight));
-  // Drops weights below float rounding.
-  const AxisMap map = without_taps_below(full, least_weight * largest);
+namespace {
+
+// Offsets (dx, 0), (dx, 1) ... of a filtered covariance.
+struct Side {
+  int dx = 0;
+  std::vector<Lag> lags;
+  std::vector<std::uint8_t> wanted;  // per offset dy from 0 on
+};
+
+// Selects offsets before their planes are allocated, because wide filters have many.
+std::vector<Side> wanted_sides(const Covariance& noise, const AxisMap& map) {
   std::set<int> sides{0};
   for (const Offset& d : noise.offsets) sides.insert({d.dx, -d.dx});
   // (0, 0) comes first: its bound is the scale of the others.
   std::vector<int> order(sides.begin(), sides.end());
   std::stable_sort(order.begin(), order.end(),
                    [](int a, int b) { return std::abs(a) < std::abs(b); });
-  // Offsets are selected before their planes are allocated, because wide filters have many.
-  struct Side {
-    int dx = 0;
-    std::vector<Lag> lags;
-    std::vector<std::uint8_t> wanted;  // per offset dy from 0 on
-  };
   std::vector<Side> wanted_of;
   double scale = 0.0;
-  std::uint64_t count = 0;
   for (const int dx : order) {
     Side side{dx, lags_of(noise, dx), {}};
     const std::vector<double> bound = bounds(map, side.lags);
@@ -240,9 +239,42 @@ Covariance filtered_across(const Covariance& noise, const AxisMap& full) {
       // Far below the final threshold, because the variance is also known by its bound only.
       const bool matters = variance || bound[e] > 0.1 * least_share * scale;
       side.wanted.push_back(matters && (dx >= 0 || e > 0) ? 1 : 0);
-      count += side.wanted.back();
     }
     wanted_of.push_back(std::move(side));
+  }
+  return wanted_of;
+}
+
+void add_side(Covariance& out, const Side& side, const AxisMap& map) {
+  std::vector<Plane> planes(side.wanted.size());
+  std::vector<Plane*> made(side.wanted.size(), nullptr);
+  for (std::size_t e = 0; e < side.wanted.size(); ++e) {
+    if (side.wanted[e] == 0) continue;
+    planes[e].resize(size(out.columns) * size(out.rows));
+    made[e] = &planes[e];
+  }
+  base::parallel_chunks(size(out.rows), 8, [&](std::size_t begin, std::size_t end) {
+    LineSum sum(map, side.lags, out.columns, side.dx);
+    for (std::size_t y = begin; y < end; ++y) sum.add_line(static_cast<int>(y), made);
+  });
+  for (std::size_t e = 0; e < planes.size(); ++e) {
+    if (made[e] == nullptr) continue;
+    out.offsets.push_back({side.dx, static_cast<int>(e)});
+    out.planes.push_back(std::move(planes[e]));
+  }
+}
+
+}  // namespace
+
+Covariance filtered_across(const Covariance& noise, const AxisMap& full) {
+  double largest = 0.0;
+  for (const double weight : full.weight) largest = std::max(largest, std::abs(weight));
+  // Drops weights below float rounding.
+  const AxisMap map = without_taps_below(full, least_weight * largest);
+  const std::vector<Side> sides = wanted_sides(noise, map);
+  std::uint64_t count = 0;
+  for (const Side& side : sides) {
+    for (const std::uint8_t wanted : side.wanted) count += wanted;
   }
   // Planes that exist at once: the result, its transpose and their filtered copy.
   constexpr std::uint64_t at_once = 3;
@@ -250,26 +282,7 @@ Covariance filtered_across(const Covariance& noise, const AxisMap& full) {
       at_once * count * noise.variance().size() * sizeof(float),
       "the twin: noise that a blur makes alike at " + std::to_string(count) + " offsets");
   Covariance out{noise.columns, noise.rows, {}, {}};
-  for (const auto& [dx, lags, wanted] : wanted_of) {
-    std::vector<Plane> planes(wanted.size());
-    std::vector<Plane*> made(wanted.size(), nullptr);
-    for (std::size_t e = 0; e < wanted.size(); ++e) {
-      if (wanted[e] == 0) continue;
-      planes[e].resize(noise.variance().size());
-      made[e] = &planes[e];
-    }
-    base::parallel_chunks(size(noise.rows), 8,
-                          [&, side = dx, &of = lags](std::size_t begin, std::size_t end) {
-                            LineSum sum(map, of, noise.columns, side);
-                            for (std::size_t y = begin; y < end; ++y)
-                              sum.add_line(static_cast<int>(y), made);
-                          });
-    for (std::size_t e = 0; e < planes.size(); ++e) {
-      if (made[e] == nullptr) continue;
-      out.offsets.push_back({dx, static_cast<int>(e)});
-      out.planes.push_back(std::move(planes[e]));
-    }
-  }
+  for (const Side& side : sides) add_side(out, side, map);
   const float most = *std::max_element(out.variance().begin(), out.variance().end());
   Covariance kept{out.columns, out.rows, {}, {}};
   for (std::size_t k = 0; k < out.planes.size(); ++k) {

@@ -28,6 +28,9 @@
 
 namespace earthshine::radiosity {
 
+// Tolerance as a share of the scene's extent; single-precision errors of rays are 1e-7.
+inline constexpr double body_rounding = 1e-5;
+
 // A closed surface, projected along its shortest side. Its winding number about a point is the sum
 // of the projected winding numbers, +1, 0 or -1, of its triangles beyond the point. Each edge is
 // evaluated identically for both of its triangles, so that no point falls between them.

@@ -125,9 +125,8 @@ void sort_by_edge(std::vector<EdgeUse>& uses, std::size_t vertices) {
   uses.swap(sorted);
 }
 
-}  // namespace
-
-ClosedParts find_closed_parts(const scenes::Scene& scene, const std::vector<char>& left_out) {
+// Of opaque one-sided faces, sorted.
+std::vector<EdgeUse> edge_uses(const scenes::Scene& scene, const std::vector<char>& left_out) {
   std::vector<std::uint32_t> id;
   std::vector<EdgeUse> uses;
   uses.reserve(3 * scene.triangles.size());
@@ -144,7 +143,13 @@ ClosedParts find_closed_parts(const scenes::Scene& scene, const std::vector<char
     }
   }
   sort_by_edge(uses, id.size());
+  return uses;
+}
 
+}  // namespace
+
+ClosedParts find_closed_parts(const scenes::Scene& scene, const std::vector<char>& left_out) {
+  const std::vector<EdgeUse> uses = edge_uses(scene, left_out);
   ClosedParts parts;
   parts.of.resize(scene.triangles.size());
   std::iota(parts.of.begin(), parts.of.end(), 0U);

@@ -9,8 +9,6 @@
 namespace earthshine::radiosity {
 namespace {
 
-// Share of the scene's extent; single-precision errors of rays are 1e-7.
-constexpr double rounding = 1e-5;
 constexpr std::size_t leaves = 256;
 
 }  // namespace
@@ -24,7 +22,7 @@ MovedParts::MovedParts(const std::vector<Vec3>& then, const ClosedBodies& bodies
       bodies_now.has_dark_outside()) {
     return;
   }
-  const double rounding_m = rounding * scenes::box_around(now.vertices).diagonal();
+  const double rounding_m = body_rounding * scenes::box_around(now.vertices).diagonal();
   std::vector<char> moved(now.triangles.size(), 0);
   std::vector<scenes::Box> items;
   std::vector<scenes::Box> of_object(now.objects.size());

@@ -14,7 +14,6 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr double rounding = 1e-5;  // of the scene's extent; single-precision errors are 1e-7
 // Peak memory of the search, measured: sorted edges, then vertices with their edges.
 constexpr std::uint64_t bytes_per_triangle = 180;
 
@@ -97,8 +96,9 @@ class Walls {
       if (left_out[k] == 0) triangles += scene.objects[k].triangle_count;
     }
     base::check_room(triangles * bytes_per_triangle, scene.path.string());
-    margin_m_ =
-        scene.vertices.empty() ? 0.0 : rounding * scenes::box_around(scene.vertices).diagonal();
+    margin_m_ = scene.vertices.empty()
+                    ? 0.0
+                    : body_rounding * scenes::box_around(scene.vertices).diagonal();
     const ClosedParts parts = find_closed_parts(scene, left_out);
     std::vector<char> holds(parts.closed);
     for (std::uint32_t t = 0; t < parts.of.size(); ++t) {

@@ -16,7 +16,7 @@ namespace {
 constexpr float normal_span = 0.19F;
 constexpr double crease_cosine = 0.92388;
 // A deeper tree would leave too few digits of the parameter for the triangles themselves.
-constexpr std::size_t most = std::size_t{1} << 16;
+constexpr std::size_t many_patches = std::size_t{1} << 16;
 
 // A small triangle: its centre in units of the wanted edge, and its normal in units of the span.
 struct Small {
@@ -158,7 +158,7 @@ void part(std::vector<Small>& all, const Range& range, std::vector<Range>& clust
   if (count < 2) return;
   const Longest of = longest(all, range);
   const float lengths = std::ceil(of.extent - 1e-4F);
-  const bool many = count > most;
+  const bool many = count > many_patches;
   if (lengths <= 1.0F && !many) return clusters.push_back(range);
   const float parts = std::max(lengths, 2.0F);
   const float middle = of.low + of.extent * std::floor(0.5F * parts) / parts;

@@ -14,7 +14,7 @@ constexpr double least_share = 1e-4;  // of the cell, on either side
 constexpr double least_reach = 0.25;  // share of the line's length in the cell that the wall covers
 constexpr double opposite = -0.5;     // cosine
 constexpr int most_cuts_deep = 8;
-constexpr double rounding = 1e-12;  // of the cell's area
+constexpr double corner_rounding = 1e-12;  // of the cell's area
 
 using Polygon = std::vector<PlanePoint>;
 
@@ -82,7 +82,7 @@ class Parting {
 
   // Adds the polygon as one side of a node and returns its index.
   std::int32_t part(const Polygon& whole, int depth = 0) {
-    Polygon polygon = with_corners(whole, rounding * area_);
+    Polygon polygon = with_corners(whole, corner_rounding * area_);
     const std::optional<Line> line = depth < most_cuts_deep ? best(polygon) : std::nullopt;
     if (line) return node(*line, halves(polygon, *line), depth + 1);
     if (polygon.size() > 4) {

@@ -33,7 +33,7 @@ Parameters in_triangle(std::uint8_t apex, double u, double v) {
 // Points of a part are inset from its edges, where rounding could put them behind the walls: by
 // this share of their distance to its middle, and more in narrow parts, up to half of it.
 constexpr double part_inset = 1e-4;
-constexpr double rounding = 0x1p-20;  // of single precision, over the facet's size and place
+constexpr double float_rounding = 0x1p-20;  // of single precision, over the facet's size and place
 
 PlanePoint in_plane(const Facet& f, Parameters p) {
   return f.parallelogram ? PlanePoint(p.s, p.t) : PlanePoint(p.s * (1.0 - p.t), p.s * p.t);
@@ -62,7 +62,7 @@ PlanePoint in_outline(const Facet& f, const Outline& o, double x, double y) {
   }
   const double width = all * glm::length(glm::cross(f.a, f.b)) / around;
   const double size = glm::length(f.corner) + glm::length(f.a) + glm::length(f.b);
-  const double inset = part_inset + std::min(0.5, rounding * size / width);
+  const double inset = part_inset + std::min(0.5, float_rounding * size / width);
   return p + inset * (0.25 * (o[0] + o[1] + o[2] + o[3]) - p);
 }
 

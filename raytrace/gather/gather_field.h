@@ -184,6 +184,11 @@ class GatherField {
   // Finds the points behind the pixels' centres. Returns the points in mirrors, which are off-grid.
   std::vector<Found> find_points();
   void find_off_grid_points(const std::vector<Found>& mirrored);
+  void append_off_grid_points(const std::vector<std::vector<Found>>& found);  // by tile
+  // Whether a pixel's centre and the centres around it lie on one surface, or on none.
+  [[nodiscard]] bool is_even(std::size_t pixel) const;
+  // Other surfaces than at the centre that eight rays through the pixel meet, with their bases.
+  [[nodiscard]] std::vector<Found> points_beside(std::size_t pixel) const;
   // Finds the neighbours of points in mirrors.
   void find_mirror_neighbours();
   // Points whose rays start all over their pixel from the initial samples on: points next to other

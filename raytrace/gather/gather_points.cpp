@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -39,6 +40,10 @@ void each_neighbour(const Window& window, int x, int y, int ring, const Visit& v
       visit(window.index(qx, qy));
     }
   }
+}
+
+bool alike(const GatherPoint& a, const GatherPoint& b) {
+  return a.material == b.material && stands_for(a, sighting_of(b));
 }
 
 }  // namespace
@@ -131,68 +136,72 @@ std::array<GatherField::Met, packet_width> GatherField::trace_pixel(std::size_t 
   return met;
 }
 
-// Casts eight rays through each pixel with another surface at a neighbouring centre.
+bool GatherField::is_even(std::size_t pixel) const {
+  const auto [x, y] = place_of(pixel);
+  const GatherPoint& own = points_[pixel];
+  bool even = true;
+  each_neighbour(window_, x, y, 1, [&](std::size_t q) {
+    const bool gathers = points_[q].reach_m > 0.0F;
+    even = even && gathers == (own.reach_m > 0.0F) && (!gathers || alike(own, points_[q]));
+  });
+  return even;
+}
+
+std::vector<GatherField::Found> GatherField::points_beside(std::size_t pixel) const {
+  std::vector<Found> found;
+  for (const Met& met : trace_pixel(pixel, off_grid_columns, off_grid_rows)) {
+    Found more;
+    if (!place(met.ray, met.hit, more.point, more.start)) continue;
+    if (points_[pixel].reach_m > 0.0F && alike(points_[pixel], more.point)) continue;
+    auto same =
+        std::ranges::find_if(found, [&](const Found& one) { return alike(one.point, more.point); });
+    if (same == found.end()) {
+      more.off_grid_point.pixel = static_cast<std::uint32_t>(pixel);
+      same = found.insert(same, more);
+    }
+    same->off_grid_point.cover += 1.0F / packet_width;
+  }
+  // Slivers get no point.
+  std::erase_if(found,
+                [](const Found& one) { return one.off_grid_point.cover < tuning::least_cover; });
+  const auto [x, y] = place_of(pixel);
+  for (auto& [off_grid_point, point, start] : found) {
+    off_grid_point.base = no_base;
+    const int rings = setting_.shares ? 2 : 0;
+    for (int ring = 1; ring <= rings && off_grid_point.base == no_base; ++ring) {
+      each_neighbour(window_, x, y, ring, [&, &of = off_grid_point, &at = point](std::size_t q) {
+        if (of.base == no_base && points_[q].reach_m > 0.0F && alike(at, points_[q])) {
+          of.base = static_cast<std::uint32_t>(q);
+        }
+      });
+    }
+    off_grid_point.region = region_of(pixel, static_cast<std::size_t>(window_.columns));
+  }
+  return found;
+}
+
 void GatherField::find_off_grid_points(const std::vector<Found>& mirrored) {
   std::vector<std::vector<Found>> found(tile_count(window_));
   even_.assign(grid_, 0);
   std::atomic<std::uint64_t> rays{0};
-  const auto alike = [](const GatherPoint& a, const GatherPoint& b) {
-    return a.material == b.material && stands_for(a, sighting_of(b));
-  };
-  const auto find = [&](int x, int y, std::vector<Found>& of_tile) {
-    const std::size_t own = window_.index(x, y), first = of_tile.size();
-    bool even = true;
-    each_neighbour(window_, x, y, 1, [&](std::size_t q) {
-      const bool gathers = points_[q].reach_m > 0.0F;
-      even = even && gathers == (points_[own].reach_m > 0.0F) &&
-             (!gathers || alike(points_[own], points_[q]));
-    });
-    even_[own] = even ? 1 : 0;
-    if (even) return;
-    rays += packet_width;
-    for (const Met& met : trace_pixel(own, off_grid_columns, off_grid_rows)) {
-      Found more;
-      if (!place(met.ray, met.hit, more.point, more.start)) continue;
-      if (points_[own].reach_m > 0.0F && alike(points_[own], more.point)) continue;
-      auto same = std::find_if(of_tile.begin() + static_cast<std::ptrdiff_t>(first), of_tile.end(),
-                               [&](const Found& one) { return alike(one.point, more.point); });
-      if (same == of_tile.end()) {
-        more.off_grid_point.pixel = static_cast<std::uint32_t>(own);
-        same = of_tile.insert(same, more);
-      }
-      same->off_grid_point.cover += 1.0F / packet_width;
-    }
-    // Slivers get no point.
-    const auto from = of_tile.begin() + static_cast<std::ptrdiff_t>(first);
-    of_tile.erase(std::remove_if(from, of_tile.end(),
-                                 [](const Found& one) {
-                                   return one.off_grid_point.cover < tuning::least_cover;
-                                 }),
-                  of_tile.end());
-    for (std::size_t k = first; k < of_tile.size(); ++k) {
-      OffGridPoint& off_grid_point = of_tile[k].off_grid_point;
-      off_grid_point.base = no_base;
-      const int rings = setting_.shares ? 2 : 0;
-      for (int ring = 1; ring <= rings && off_grid_point.base == no_base; ++ring) {
-        each_neighbour(window_, x, y, ring, [&](std::size_t q) {
-          if (off_grid_point.base == no_base && points_[q].reach_m > 0.0F &&
-              alike(of_tile[k].point, points_[q])) {
-            off_grid_point.base = static_cast<std::uint32_t>(q);
-          }
-        });
-      }
-      off_grid_point.region =
-          region_of(off_grid_point.pixel, static_cast<std::size_t>(window_.columns));
-    }
-  };
   base::parallel_chunks(found.size(), 1, [&](std::size_t t, std::size_t) {
     const Window tile = tile_of(window_, t);
     for (int y = tile.y; y < tile.y + tile.rows; ++y) {
-      for (int x = tile.x; x < tile.x + tile.columns; ++x) find(x, y, found[t]);
+      for (int x = tile.x; x < tile.x + tile.columns; ++x) {
+        const std::size_t pixel = window_.index(x, y);
+        even_[pixel] = is_even(pixel) ? 1 : 0;
+        if (even_[pixel] != 0) continue;
+        rays += packet_width;
+        std::ranges::move(points_beside(pixel), std::back_inserter(found[t]));
+      }
     }
   });
   camera_rays_ += rays;
   if (!mirrored.empty()) found.push_back(mirrored);
+  append_off_grid_points(found);
+}
+
+void GatherField::append_off_grid_points(const std::vector<std::vector<Found>>& found) {
   std::vector<std::uint32_t> of_pixel(grid_ + 1, 0U);
   for (const auto& tile : found) {
     for (const Found& one : tile) ++of_pixel[one.off_grid_point.pixel + 1U];

@@ -8,7 +8,7 @@
 namespace earthshine::raytrace {
 namespace {
 
-constexpr std::size_t points_at_once = 256;
+constexpr std::size_t block = 256;
 
 // Remaining noise, lost signal and Stein's term; inverse_dof: 1 / N. c = 1 - q / (D - k q), so that
 // c' = (1 - c)^2 / q. The sum is at most the detail.
@@ -31,9 +31,9 @@ float clamped_signal(float s, float q, float inverse_dof, float coarser) {
 void Shared::squared_errors_with(double factor, std::size_t begin, std::size_t end,
                                  float* errors) const {
   const float per_more = 1.0F / static_cast<float>(factor);
-  for (; begin < end; begin += points_at_once) {
-    const std::size_t count = std::min(points_at_once, end - begin);
-    std::array<float, points_at_once> clamped, coarser;
+  for (; begin < end; begin += block) {
+    const std::size_t count = std::min(block, end - begin);
+    std::array<float, block> clamped, coarser;
     coarser.fill(std::numeric_limits<float>::max());
     for (std::size_t k = 0; k < count; ++k) errors[k] = rest[begin + k] * per_more;
     for (std::size_t level = share_levels; level-- > 0;) {

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "base/units.h"
 #include "radiosity/fill_solution.h"
 #include "radiosity/near_lamps.h"
 #include "raytrace/light/uncaught_light.h"
@@ -36,8 +37,6 @@ constexpr double most_standard_error = 0.3;  // of the squared error, over the w
 
 constexpr int coarse_rays = 64;
 constexpr double coarse_error = 0.2;  // target of the first patches
-
-double squared(double x) { return x * x; }
 
 class SurfaceSearch {
  public:
@@ -98,7 +97,7 @@ class SurfaceSearch {
   void hold_to_ledger(double lacks) {
     const double stated = result_.surface.parts.total().estimate;
     if (result_.steps.empty() || lacks <= stated) return;
-    const double more = std::sqrt(squared(lacks) - squared(stated));
+    const double more = std::sqrt(base::squared(lacks) - base::squared(stated));
     result_.surface.parts.form_factors =
         result_.surface.parts.form_factors + ErrorEstimate{more, more};
     result_.steps.back().estimate = lacks;
@@ -185,18 +184,18 @@ class SurfaceSearch {
       rounds_->set_mean(found.mean);
       if (is_root()) choice.see(light_->patches(), samples, all, noise.all());
       if (may_cast()) light_->correct(samples, all, budget);
-      if (found.standard_error > most_standard_error * squared(wanted_.error))
+      if (found.standard_error > most_standard_error * base::squared(wanted_.error))
         points_wanted_ *= 2.0;
       bool cuts = false;
       std::vector<std::uint32_t> parent = std::move(all);
-      if (may_cut() && found.patches > 0.8 * cut_share * squared(aim * wanted_.error)) {
+      if (may_cut() && found.patches > 0.8 * cut_share * base::squared(aim * wanted_.error)) {
         cuts = rounds_->cut_gathered(choice, cut_share * enough(), points_wanted_, parent);
         if (rounds_->cut_shadows(cut_share * enough(), parent, &choice)) cuts = true;
       }
       idle = cuts || error <= std::max(wanted_.error, 0.97 * before) ? 0 : idle + 1;
       if (idle >= most_idle && pass > 4) return stop(why_no_more());
       before = error;
-      const double target = noise_share * squared(aim * wanted_.error * rounds_->mean());
+      const double target = noise_share * base::squared(aim * wanted_.error * rounds_->mean());
       if (is_root()) budget = next_budget(variance, parent, target);
       light_->shares().broadcast([&](base::Parcel& parcel) { parcel.pass(budget); });
     }
@@ -206,7 +205,7 @@ class SurfaceSearch {
   // there is time.
   [[nodiscard]] bool is_sure(const ResidualError& found) const {
     return found.square + found.standard_error <=
-               (1.0 + most_standard_error) * squared(wanted_.error) ||
+               (1.0 + most_standard_error) * base::squared(wanted_.error) ||
            points_wanted_ >= most_points || time_gone() > more_points_share ||
            !(may_cut() || may_cast());
   }
@@ -216,7 +215,7 @@ class SurfaceSearch {
   // too.
   [[nodiscard]] double enough() const {
     const double now = result_.steps.empty() ? first_error : result_.steps.back().estimate;
-    return squared(std::max(cut_aim * wanted_.error, next_error * now) * rounds_->mean());
+    return base::squared(std::max(cut_aim * wanted_.error, next_error * now) * rounds_->mean());
   }
 
   // At most four times the rays of the previous pass, or as many as the remaining time allows.

@@ -7,6 +7,8 @@
 #include <functional>
 #include <numeric>
 
+#include "base/units.h"
+
 namespace earthshine::raytrace {
 namespace {
 
@@ -14,8 +16,6 @@ namespace {
 constexpr double sure = 1.5 * 1.645;
 constexpr std::size_t residual_columns = 6;  // three for each half of the samples
 constexpr double darkest = 0.02;             // least true mean, relative to the solution's mean
-
-double squared(double x) { return x * x; }
 
 Rgb at(const std::vector<double>& values, std::size_t first) {
   return {values[first], values[first + 1], values[first + 2]};
@@ -64,7 +64,7 @@ ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& s
     const bool is_spot = light.is_spot(i);
     const double ma = double(r.mean[0]), mb = double(r.mean[1]);
     square += part * ((is_spot ? ma * mb : double(r.square)) + ra * gb + rb * ga + ga * gb);
-    variance += squared(part * (is_spot ? product_error(ma, mb) : double(r.square_error)));
+    variance += base::squared(part * (is_spot ? product_error(ma, mb) : double(r.square_error)));
     whole += part * double(r.mean_square);
     rays += part * noise.rays[i];
     lamps += part * noise.lamps[i];

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/units.h"
 #include "raytrace/frame/frame.h"
 
 namespace earthshine::raytrace {
@@ -13,8 +14,6 @@ namespace {
 constexpr double far_apart = 0.1;     // difference of the halves of shadow rays, over the mean
 constexpr double most_weighed = 2.0;  // limit on weighted gathered light, over the larger of bright
                                       // light and the solution
-
-double squared(double x) { return x * x; }
 
 // Of n values: the squared mean without bias by noise, and the variance of the mean.
 struct MeanSquare {
@@ -60,7 +59,7 @@ void ResidualSums::finish(double mean, PatchResidual& residual) {
   MeanSquare all, lamps, products;
   double weights = 0.0, unweighted = 0.0;
   double apart = 0.0, lamps_apart = 0.0;  // sums of the variance of the two halves' mean
-  std::array<double, 2> s_step{}, t_step{}, half_count{}, gathered{}, mean_of{};
+  std::array<double, 2> s_step{}, t_step{}, gathered{};
   for (Point& p : points_) {
     if (!p.placed) continue;
     const double off = p.weighed_by.value_or(0.5 * (p.all[0] + p.all[1]));
@@ -98,12 +97,16 @@ void ResidualSums::finish(double mean, PatchResidual& residual) {
   const double n2 = all.count * all.count;
   residual.mean_variance = kept(apart / n2);
   residual.lamps_mean_variance = kept(lamps_apart / n2);
-  residual.wants_shadow_rays = lamps_apart / all.count > squared(far_apart * mean);
+  residual.wants_shadow_rays = lamps_apart / all.count > base::squared(far_apart * mean);
   for (std::size_t h = 0; h < 2; ++h) residual.gathered[h] = kept(gathered[h] / all.count);
   residual.along_s = kept(std::max(0.0, s_step[0] * s_step[1] / n2));
   residual.along_t = kept(std::max(0.0, t_step[0] * t_step[1] / n2));
-  // Alternate open points.
+  finish_halves(residual);
+}
+
+void ResidualSums::finish_halves(PatchResidual& residual) const {
   std::array<Rgb, 2> half{Rgb(0.0), Rgb(0.0)};
+  std::array<double, 2> half_count{}, mean_of{};
   std::size_t k = 0;
   for (const Point& p : points_) {
     if (!p.placed) continue;
@@ -115,7 +118,7 @@ void ResidualSums::finish(double mean, PatchResidual& residual) {
   for (std::size_t h = 0; h < 2; ++h) {
     if (half_count[h] <= 0.0) continue;
     residual.half[h] = glm::vec3(half[h] / half_count[h]);
-    residual.mean[h] = kept(mean_of[h] / half_count[h]);
+    residual.mean[h] = static_cast<float>(mean_of[h] / half_count[h]);
   }
 }
 

@@ -35,6 +35,8 @@ class ResidualSums {
   void finish(double mean, PatchResidual& residual);
 
  private:
+  // From alternate open points.
+  void finish_halves(PatchResidual& residual) const;
   struct Point {
     bool placed = false;
     double x = 0.0, y = 0.0, radiosity = 0.0;

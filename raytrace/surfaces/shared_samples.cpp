@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "base/units.h"
+
 namespace earthshine::raytrace {
 namespace {
 
@@ -10,8 +12,6 @@ namespace {
 constexpr double like_others = 16.0;
 // Squared standard errors beyond which a patch's own difference overrides the common estimate.
 constexpr double standard_error = 4.0;
-
-double squared(double x) { return x * x; }
 
 }  // namespace
 
@@ -55,7 +55,7 @@ SharedSamples::SharedSamples(const SurfaceLight& light, const radiosity::PatchAl
     const auto c = change(i);
     for (Sums* const of : {&sums[j], &every}) {
       of->signal += area[i] * (c[0] - common[j][0] / all_[j]) * (c[1] - common[j][1] / all_[j]);
-      of->noise += area[i] * squared(0.5 * (c[0] - c[1]));
+      of->noise += area[i] * base::squared(0.5 * (c[0] - c[1]));
       of->area += area[i];
       of->patches += 1.0;
     }
@@ -71,7 +71,7 @@ SharedSamples::SharedSamples(const SurfaceLight& light, const radiosity::PatchAl
     const double prior = like_others * sums[j].area / sums[j].patches;
     const double all = sums[j].area + prior;
     const auto c = change(i);
-    const double own_noise = squared(0.5 * (c[0] - c[1]));
+    const double own_noise = base::squared(0.5 * (c[0] - c[1]));
     noise_[i] = std::max((sums[j].noise + prior * noise) / all, own_noise);
     off_[i] = c[0] * c[1];
     if (sums[j].patches < 2.0) continue;
@@ -86,7 +86,8 @@ SharedSamples::SharedSamples(const SurfaceLight& light, const radiosity::PatchAl
 double SharedSamples::rays(std::uint32_t patch) const {
   if (own_[patch] <= 0.0) return 0.0;
   const double kept = kept_[patch];
-  return 1.0 / (squared(kept) / own_[patch] + (1.0 - squared(kept)) / all_[coarse_[patch]]);
+  return 1.0 /
+         (base::squared(kept) / own_[patch] + (1.0 - base::squared(kept)) / all_[coarse_[patch]]);
 }
 
 double SharedSamples::still_counting(std::uint32_t patch, double before) const {

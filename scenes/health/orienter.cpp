@@ -17,7 +17,7 @@ namespace {
 constexpr double on_it = 0.1;
 constexpr double strictly_inside = 4.0 * base::pi - 0.1;
 // Number of triangles of another part that are tested.
-constexpr std::size_t probes = 8;
+constexpr std::size_t faces_probed = 8;
 constexpr double wide = 8.0;  // times the median width of the parts
 
 }  // namespace
@@ -223,8 +223,8 @@ Orienter::Inside Orienter::what_is_inside(std::size_t number, std::size_t p) {
   for (std::size_t o = 0; o < scene_.objects.size(); ++o) {
     if (o == number) continue;
     const Object& other = scene_.objects[o];
-    for (std::size_t k = 0; k < probes; ++k) {
-      const auto step = static_cast<std::uint32_t>(k * other.triangle_count / probes);
+    for (std::size_t k = 0; k < faces_probed; ++k) {
+      const auto step = static_cast<std::uint32_t>(k * other.triangle_count / faces_probed);
       if (solid_angle_of(scene_, part, middle_of(other.first_triangle + step)) > strictly_inside) {
         return Inside::Things;
       }
@@ -251,8 +251,8 @@ bool Orienter::stands_in(const SurfacePart& outer, const SurfacePart& inner) con
       glm::any(glm::greaterThan(inner.low, outer.high))) {
     return false;
   }
-  for (std::size_t k = 0; k < probes; ++k) {
-    const std::uint32_t triangle = inner.triangles[k * inner.triangles.size() / probes];
+  for (std::size_t k = 0; k < faces_probed; ++k) {
+    const std::uint32_t triangle = inner.triangles[k * inner.triangles.size() / faces_probed];
     if (solid_angle_of(scene_, outer, middle_of(triangle)) > strictly_inside) return true;
   }
   return false;

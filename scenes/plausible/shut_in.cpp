@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::uint32_t most_rays = 512, fewest_rays = 64, rays_of_all = 1U << 16U;
 constexpr double nearly_all = 0.95, some = 0.1;
-constexpr int most_reflections = 6, most_panes_passed = 8;
+constexpr int most_reflections = 6;
 
 using Emit = std::function<EmittedRay(const std::array<float, 4>& at)>;
 

@@ -14,8 +14,7 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr std::size_t grid = 24;  // rays per side
-constexpr int most_panes_passed = 8;
+constexpr std::size_t grid = 24;    // rays per side
 constexpr double near_share = 0.9;  // of the rays
 // Share of the distance to the target below which a surface that fills the picture is too near.
 constexpr double near_of_way = 0.05;
@@ -25,11 +24,11 @@ constexpr double small_m = 0.1;
 // Common fields of view. In radians, a number in this range is below 2.7 degrees.
 constexpr double usual_fields_from_deg = 15.0, usual_fields_to_deg = 150.0;
 
-struct Frame {
+struct CameraFrame {
   Vec3 position, forward, right, up;
   Projection projection;
 
-  explicit Frame(const Camera& camera)
+  explicit CameraFrame(const Camera& camera)
       : position(camera.position),
         forward(glm::normalize(camera.look_at - camera.position)),
         right(glm::normalize(glm::cross(forward, camera.up))),
@@ -48,7 +47,7 @@ struct Frame {
 // Whether a narrow picture shows any object completely, as a telephoto picture does. Uses more
 // rays.
 bool shows_a_whole_object(const Scene& scene, const View& view) {
-  const Frame frame(*view.camera);
+  const CameraFrame frame(*view.camera);
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     if (view.hits_of[o] == 0) continue;
     const Object& object = scene.objects[o];
@@ -145,7 +144,7 @@ View sample_view(const Scene& scene, const RayQuery& query, const Camera& camera
   view.hits_of.resize(scene.objects.size());
   view.backs_of.resize(scene.objects.size());
   view.inner_backs_of.resize(scene.objects.size());
-  const Frame frame(camera);
+  const CameraFrame frame(camera);
   std::vector<double> distances;
   for (std::size_t k = 0; k < grid * grid; ++k) {
     ++view.rays;

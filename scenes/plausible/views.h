@@ -12,6 +12,8 @@
 
 namespace earthshine::scenes {
 
+inline constexpr int most_panes_passed = 8;  // by a ray
+
 // Start of a ray that continues from a hit: off the surface, on the side of its direction.
 [[nodiscard]] Vec3 leave_toward(const Scene& scene, const RayQuery& query, const Hit& hit,
                                 const Vec3& direction);

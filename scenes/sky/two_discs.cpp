@@ -16,9 +16,9 @@ double versine(double x) {
 }
 
 // Spherical triangle of both centres and an intersection of the rims, from its sides.
-struct Triangle {
+struct SphericalTriangle {
   double p, a, b, separation;  // p: half the sum of the sides
-  Triangle(double of_a, double of_b, double apart)
+  SphericalTriangle(double of_a, double of_b, double apart)
       : p(0.5 * (of_a + of_b + apart)), a(of_a), b(of_b), separation(apart) {}
   [[nodiscard]] bool is_one() const { return p > a && p > b && p > separation; }
   // Angle at the centre of the disc with radius `own`.
@@ -38,13 +38,13 @@ struct Triangle {
 double disc_solid_angle(double radius) { return 2.0 * base::pi * versine(radius); }
 
 double covered_half_arc(double rim, double other, double separation) {
-  const Triangle triangle(rim, other, separation);
+  const SphericalTriangle triangle(rim, other, separation);
   if (triangle.is_one()) return triangle.angle(rim, other);
   return rim + separation <= other ? base::pi : 0.0;
 }
 
 double shared_solid_angle(double a, double b, double separation) {
-  const Triangle triangle(a, b, separation);
+  const SphericalTriangle triangle(a, b, separation);
   if (!triangle.is_one()) {
     return separation < std::max(a, b) ? disc_solid_angle(std::min(a, b)) : 0.0;
   }

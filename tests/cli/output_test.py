@@ -101,7 +101,7 @@ class Output(program.Case):
     def test_interrupted_while_writing(self):
         """The old picture remains, without other files, at whatever time the signal arrives."""
         call = [program.PROGRAM, "render", "ball.toml", "-o", "a.exr", "-q", "--size", "768x768", "--indirect",
-                "none", "--set", "quality.gather_rays=1", "--aov", "albedo,normal,position,depth,range"]
+                "none", "--set", "quality.camera_samples=4", "--aov", "albedo,normal,position,depth,range"]
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             self.write("a.exr", "old")
             with subprocess.Popen(call, cwd=self.folder, stderr=subprocess.DEVNULL, preexec_fn=lambda:
@@ -118,7 +118,7 @@ class Output(program.Case):
     def test_killed_while_writing(self):
         """The next run that writes the file removes temporary files of a killed run."""
         call = [program.PROGRAM, "render", "ball.toml", "-o", "a.exr", "-q", "--size", "768x768", "--indirect",
-                "none", "--set", "quality.gather_rays=1", "--aov", "albedo,normal,position,depth,range"]
+                "none", "--set", "quality.camera_samples=4", "--aov", "albedo,normal,position,depth,range"]
         left = []
         while not left:
             (self.folder / "a.exr").unlink(missing_ok=True)

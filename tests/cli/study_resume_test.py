@@ -97,10 +97,20 @@ class Resume(Case):
         self.assertEqual(code.count(constant), 1)
         changed, objects, other = self.folder / "iris.cpp", self.folder / "iris.o", self.folder / "other"
         changed.write_text(code.replace(constant, constant + "1.0 + "), encoding="utf-8")
+
+        def compiles_source(line):
+            """The source itself, or the file that includes all of its folder."""
+            file = pathlib.Path(line[line.index("-c") + 1]) if "-c" in line else source.parent
+            return file == source or (file.suffix == ".cxx" and f'"{source}"' in file.read_text(encoding="utf-8"))
         commands = subprocess.run(["ninja", "-C", build, "-t", "commands", "earthshine"], capture_output=True, text=True,
                                   check=True).stdout
         lines = [shlex.split(line) for line in commands.splitlines()]
-        compiled = next(line for line in lines if "-c" in line and line[line.index("-c") + 1] == str(source))
+        compiled = next(line for line in lines if compiles_source(line))
+        together = pathlib.Path(compiled[compiled.index("-c") + 1])
+        if together != source:
+            text = together.read_text(encoding="utf-8").replace(str(source), str(changed))
+            changed = self.folder / "together.cxx"
+            changed.write_text(text, encoding="utf-8")
         linked = [word for word in lines[-1] if word not in (":", "&&")]
         for line, option, path in ((compiled, "-c", changed), (compiled, "-o", objects),
                                    (compiled, "-MF", objects.with_suffix(".d")), (linked, "-o", other)):

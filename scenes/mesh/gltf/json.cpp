@@ -146,7 +146,7 @@ bool any_word(std::string_view words, Holds holds) {
   return false;
 }
 
-constexpr Rule extension{{}, Kind::Table};
+constexpr Rule extension_rule{{}, Kind::Table};
 
 const Rule* rule_for(std::string_view keys) {
   const auto* const found = std::find_if(std::begin(rules), std::end(rules), [&](const Rule& rule) {
@@ -188,7 +188,7 @@ class Values {
       if (is_extension && !is_read_extension(entry.key())) continue;
       const std::string below = keys + "/" + entry.key();
       const std::string here = place.empty() ? entry.key() : place + "." + entry.key();
-      const Rule* rule = is_extension ? &extension : rule_for(below);
+      const Rule* rule = is_extension ? &extension_rule : rule_for(below);
       if (rule != nullptr) check_value(*rule, value, below, here);
       if (value.is_object()) check(value, below, here);
       for (std::size_t i = 0; value.is_array() && i < value.size(); ++i) {
