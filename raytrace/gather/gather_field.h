@@ -148,7 +148,7 @@ class GatherField {
   // Whether the centres of the field's pixel that holds (x, y) of the picture, and of the pixels
   // around it, lie on one surface, or on none.
   [[nodiscard]] bool is_interior(int x, int y) const {
-    return even_[window_.index(x / setting_.step, y / setting_.step)] != 0;
+    return interior_[window_.index(x / setting_.step, y / setting_.step)] != 0;
   }
   // Number of ray origins: 1, or several all over the pixel.
   [[nodiscard]] std::size_t origins_at(std::size_t point) const {
@@ -186,7 +186,7 @@ class GatherField {
   void find_off_grid_points(const std::vector<Found>& mirrored);
   void append_off_grid_points(const std::vector<std::vector<Found>>& found);  // by tile
   // Whether a pixel's centre and the centres around it lie on one surface, or on none.
-  [[nodiscard]] bool is_even(std::size_t pixel) const;
+  [[nodiscard]] bool one_surface_around(std::size_t pixel) const;
   // Other surfaces than at the centre that eight rays through the pixel meet, with their bases.
   [[nodiscard]] std::vector<Found> points_beside(std::size_t pixel) const;
   // Finds the neighbours of points in mirrors.
@@ -265,7 +265,7 @@ class GatherField {
   std::vector<std::uint32_t> first_off_grid_;  // per pixel, and one past the last
   std::vector<RayStart> start_;
   std::vector<RayLengths> lengths_;       // of the rays that read the solution
-  std::vector<std::uint8_t> even_;        // per pixel, 1: is_interior()
+  std::vector<std::uint8_t> interior_;    // per pixel, 1: is_interior()
   std::vector<std::uint8_t> over_pixel_;  // per point, 1: rays start all over its pixel
   std::array<Estimate, gathered_kinds> estimate_;
   std::array<Shared, gathered_kinds> shared_;

@@ -136,15 +136,15 @@ std::array<GatherField::Met, packet_width> GatherField::trace_pixel(std::size_t 
   return met;
 }
 
-bool GatherField::is_even(std::size_t pixel) const {
+bool GatherField::one_surface_around(std::size_t pixel) const {
   const auto [x, y] = place_of(pixel);
   const GatherPoint& own = points_[pixel];
-  bool even = true;
+  bool one = true;
   each_neighbour(window_, x, y, 1, [&](std::size_t q) {
     const bool gathers = points_[q].reach_m > 0.0F;
-    even = even && gathers == (own.reach_m > 0.0F) && (!gathers || alike(own, points_[q]));
+    one = one && gathers == (own.reach_m > 0.0F) && (!gathers || alike(own, points_[q]));
   });
-  return even;
+  return one;
 }
 
 std::vector<GatherField::Found> GatherField::points_beside(std::size_t pixel) const {
@@ -182,15 +182,15 @@ std::vector<GatherField::Found> GatherField::points_beside(std::size_t pixel) co
 
 void GatherField::find_off_grid_points(const std::vector<Found>& mirrored) {
   std::vector<std::vector<Found>> found(tile_count(window_));
-  even_.assign(grid_, 0);
+  interior_.assign(grid_, 0);
   std::atomic<std::uint64_t> rays{0};
   base::parallel_chunks(found.size(), 1, [&](std::size_t t, std::size_t) {
     const Window tile = tile_of(window_, t);
     for (int y = tile.y; y < tile.y + tile.rows; ++y) {
       for (int x = tile.x; x < tile.x + tile.columns; ++x) {
         const std::size_t pixel = window_.index(x, y);
-        even_[pixel] = is_even(pixel) ? 1 : 0;
-        if (even_[pixel] != 0) continue;
+        interior_[pixel] = one_surface_around(pixel) ? 1 : 0;
+        if (interior_[pixel] != 0) continue;
         rays += packet_width;
         std::ranges::move(points_beside(pixel), std::back_inserter(found[t]));
       }
@@ -224,7 +224,7 @@ void GatherField::append_off_grid_points(const std::vector<std::vector<Found>>& 
 void GatherField::find_first_origins() {
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const GatherPoint& point = points_[p];
-    if (p < grid_ && even_[p] == 0) over_pixel_[p] = 1;
+    if (p < grid_ && interior_[p] == 0) over_pixel_[p] = 1;
     if (point.lobe <= 0.0F) continue;
     const auto [x, y] = place_of(pixel_of(p));
     for (int ring = 0; ring <= 1; ++ring) {

@@ -178,7 +178,7 @@ def main():
         bench.run("console", "bay.toml", "-o", "orbit.html", "--positions", str(len(POSITIONS)), "-q")
         presets = page_data(bench.folder / "orbit.html")["presets"]
         words = ["camera=A", "camera=A&l.left=0.5&t.right=%23ff8000", "camera=A&view=monitor&c.iris=fixed&c.f_number=8&m.gamma=2", "camera=A&white=50"]
-        expected = {"cameras": 2, "patience": 5, "clean": clean(bench, draw, 3), "monitor": monitor(bench, draw), "verdicts": [{"page": str(bench.folder / "orbit.html"), "cases": verdicts(bench, draw, presets)},
+        expected = {"cameras": 2, "clean": clean(bench, draw, 3), "monitor": monitor(bench, draw), "verdicts": [{"page": str(bench.folder / "orbit.html"), "cases": verdicts(bench, draw, presets)},
                                  {"page": str(bench.folder / "study.html"), "cases": of_study(bench)}],
                     "words": words, "words_file": str(bench.folder / "words.json")}
         (bench.folder / "expected.json").write_text(json.dumps(expected), encoding="utf-8")
