@@ -65,7 +65,7 @@ void check_ranks_alike(const Json& things) {
       differs = fmt::format("{} is not what rank {} of {} has", name, rank, ranks->count());
     }
   };
-  base::broadcast_in_turn(
+  base::sequential_broadcast(
       *ranks, [&] { return dump(things); }, compare);
   if (differs.empty()) return;
   throw Error(Blame::Input, "rank 0", differs,

@@ -57,7 +57,7 @@ constexpr GroupFiles version_1 = {"memory.limit_in_bytes", "memory.usage_in_byte
 constexpr GroupFiles version_2 = {"memory.max", "memory.current", "inactive_file"};
 
 // Free memory of one control group.
-Bytes left_of(const fs::path& folder, const GroupFiles& files) {
+Bytes bytes_left(const fs::path& folder, const GroupFiles& files) {
   const Bytes limit = number_in(folder / files.limit);
   if (!limit) return std::nullopt;
   const std::uint64_t usage = number_in(folder / files.usage).value_or(0);
@@ -83,7 +83,7 @@ Bytes left_of_groups(const fs::path& root) {
     const fs::path mount = root / (second_version ? "sys/fs/cgroup" : "sys/fs/cgroup/memory");
     fs::path group = fs::path(line.substr(second + 1)).relative_path();
     while (true) {
-      take_least(least, left_of(mount / group, second_version ? version_2 : version_1));
+      take_least(least, bytes_left(mount / group, second_version ? version_2 : version_1));
       if (group.empty()) break;
       group = group.parent_path();
     }

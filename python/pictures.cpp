@@ -25,7 +25,7 @@ namespace earthshine::python {
 using app::Json;
 
 std::shared_ptr<Frame> read_frame(const std::string& path) {
-  const Turn turn;
+  const CallLock call_lock;
   auto frame = std::make_shared<Frame>();
   frame->file = base::read_exr(path);
   for (const auto& [name, value] : frame->file.header.numbers) {
@@ -35,14 +35,14 @@ std::shared_ptr<Frame> read_frame(const std::string& path) {
 }
 
 std::shared_ptr<Frame> relight(const Frame& frame, const std::vector<std::string>& settings) {
-  const Turn turn;
+  const CallLock call_lock;
   auto changed = std::make_shared<Frame>(frame);
   app::relight(changed->file, settings, "the frame");
   return changed;
 }
 
 void write_frame(const Frame& frame, const std::string& path) {
-  const Turn turn;
+  const CallLock call_lock;
   if (path.ends_with(".exr")) return base::write_exr(path, frame.file.image, frame.file.header);
   if (!path.ends_with(".png")) {
     throw base::Error(base::Blame::Input, path, "is neither a .exr nor a .png file", {},
@@ -72,7 +72,7 @@ app::CctvSetup camera_of(const Frame& frame, const Request& request, const app::
 std::shared_ptr<Monitor> degrade_frame(const Frame& frame, const std::string& request_text,
                                        const Monitor* before) {
   const Request request(request_text);
-  const Turn turn(request);
+  const CallLock call_lock(request);
   const app::Common common = request.common();
   app::CctvSetup setup = camera_of(frame, request, common);
   degrade::Options& options = setup.chain.options;
@@ -105,13 +105,13 @@ std::shared_ptr<Monitor> degrade_frame(const Frame& frame, const std::string& re
 }
 
 void write_monitor(const Monitor& monitor, const std::string& path) {
-  const Turn turn;
+  const CallLock call_lock;
   app::write_cctv(path, setup_of(monitor.view), monitor.result);
 }
 
 std::string run_study(const std::string& request_text) {
   const Request request(request_text);
-  const Turn turn(request);
+  const CallLock call_lock(request);
   const app::Common common = request.common();
   const std::string path = request.word("path", ""), kind = request.word("kind", "run");
   app::StudyTask task;

@@ -17,7 +17,7 @@ namespace {
   throw base::Error(base::Blame::Input, key, found.dump() + " is not allowed", allowed);
 }
 
-std::mutex& turns() {
+std::mutex& call_mutex() {
   static std::mutex mutex;
   return mutex;
 }
@@ -73,9 +73,9 @@ int Request::threads() const {
   return static_cast<int>(threads);
 }
 
-Turn::Turn() : lock_(turns()), threads_(0) {}
+CallLock::CallLock() : lock_(call_mutex()), threads_(0) {}
 
-Turn::Turn(const Request& request) : lock_(turns()), threads_(request.threads()) {}
+CallLock::CallLock(const Request& request) : lock_(call_mutex()), threads_(request.threads()) {}
 
 void leave_if_asked() {
   if (app::Interrupt::asked()) throw Stopped();

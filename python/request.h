@@ -38,10 +38,10 @@ class Request {
 };
 
 // Serialises calls from several Python threads: thread limits and stop requests are per process.
-class Turn {
+class CallLock {
  public:
-  Turn();
-  explicit Turn(const Request& request);
+  CallLock();
+  explicit CallLock(const Request& request);
 
  private:
   std::unique_lock<std::mutex> lock_;

@@ -51,8 +51,9 @@ raytrace::Indirect indirect_of(const std::string& word) {
        {Indirect::Radiosity, Indirect::Distributed, Indirect::None, Indirect::Paths}) {
     if (app::indirect_name(one) == word) return one;
   }
-  throw base::Error(base::Blame::Input, "indirect", "\"" + word + "\" is no way of light",
-                    "the ways are radiosity, distributed, none and paths");
+  throw base::Error(base::Blame::Input, "indirect",
+                    "\"" + word + "\" is not an estimator of indirect light",
+                    "allowed: radiosity, distributed, none and paths");
 }
 
 app::RenderCall call_of(const Request& request, const std::string& path,
@@ -170,12 +171,12 @@ Session::Session(std::string path, std::optional<std::string> text)
 Session::~Session() = default;
 
 void Session::set(std::vector<std::string> overrides) {
-  const Turn turn;
+  const CallLock call_lock;
   state_->set(std::move(overrides));
 }
 
 std::string Session::describe() {
-  const Turn turn;
+  const CallLock call_lock;
   state_->read();
   const scenes::Scene& scene = state_->loaded.scene;
   const auto own = [](const auto& one) { return json_of(one); };
@@ -213,7 +214,7 @@ std::string Session::work() const {
 std::shared_ptr<Frame> Session::render(const std::string& request_text,
                                        const std::shared_ptr<const Light>& light) {
   const Request request(request_text);
-  const Turn turn(request);
+  const CallLock call_lock(request);
   State& s = *state_;
   app::StageTimes times;
   times.measure("read", [&] { s.read(); });
@@ -270,7 +271,7 @@ std::shared_ptr<Frame> Session::render(const std::string& request_text,
 
 std::shared_ptr<Light> Session::solve(const std::string& request_text) {
   const Request request(request_text);
-  const Turn turn(request);
+  const CallLock call_lock(request);
   State& s = *state_;
   app::StageTimes times;
   times.measure("read", [&] { s.read(); });
@@ -308,14 +309,14 @@ std::shared_ptr<Light> Session::solve(const std::string& request_text) {
 }
 
 void Session::write_light(const Light& light, const std::string& path) {
-  const Turn turn;
+  const CallLock call_lock;
   state_->read();
   app::write_solution(path, light.kept->solution, state_->loaded, light.kept->solver);
 }
 
 std::string Session::plan(const std::string& request_text) {
   const Request request(request_text);
-  const Turn turn(request);
+  const CallLock call_lock(request);
   State& s = *state_;
   s.read();
   const app::RenderCall call = call_of(request, s.path, s.overrides);
@@ -335,7 +336,7 @@ std::string Session::plan(const std::string& request_text) {
 
 std::string Session::form_factors(const std::string& request_text) {
   const Request request(request_text);
-  const Turn turn(request);
+  const CallLock call_lock(request);
   State& s = *state_;
   s.read();
   s.loaded.scene.quality = s.quality;

@@ -88,22 +88,22 @@ std::optional<CoincidentFaces::Met> CoincidentFaces::first_met(std::uint32_t tri
   };
   std::optional<Met> met = step(triangle);
   if (!met) return std::nullopt;  // almost every ray: no path is stored
-  std::vector<Met> way{{triangle, 0.0, 0.0, false}};
-  for (; met; met = step(way.back().triangle)) {
-    const auto seen = std::find_if(way.begin(), way.end(), [&](const Met& before) {
+  std::vector<Met> path{{triangle, 0.0, 0.0, false}};
+  for (; met; met = step(path.back().triangle)) {
+    const auto seen = std::find_if(path.begin(), path.end(), [&](const Met& before) {
       return before.triangle == met->triangle;
     });
-    if (seen != way.end()) {
+    if (seen != path.end()) {
       // A cycle, as between the two sides of one sheet and another sheet. One of its faces must be
       // hit, or no light would be. The last one in the scene is the same for every caller.
       *seen = *met;
-      way.back() = *std::max_element(
-          seen, way.end(), [](const Met& a, const Met& b) { return a.triangle < b.triangle; });
+      path.back() = *std::max_element(
+          seen, path.end(), [](const Met& a, const Met& b) { return a.triangle < b.triangle; });
       break;
     }
-    way.push_back(*met);
+    path.push_back(*met);
   }
-  return way.back().triangle == triangle ? std::nullopt : std::optional(way.back());
+  return path.back().triangle == triangle ? std::nullopt : std::optional(path.back());
 }
 
 bool CoincidentFaces::covers(std::uint32_t triangle, bool front, const Vec3& at) const {

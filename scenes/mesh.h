@@ -79,11 +79,10 @@ struct Mesh {
   std::vector<std::string> part_names;                // groups, objects, nodes, meshes, solids
   std::vector<std::vector<std::uint32_t>> part_sets;  // a polygon may belong to several
   std::vector<std::string> material_names;
-  std::vector<Material> materials;                       // defined by the file or a library
-  std::vector<base::Location> material_places;           // one for each material
-  std::vector<std::vector<std::string>> material_lacks;  // properties of each material that are
-                                                         // ignored although they change the
-                                                         // picture; may be shorter
+  std::vector<Material> materials;              // defined by the file or a library
+  std::vector<base::Location> material_places;  // one for each material
+  // Ignored properties of each material that would change the picture; may be shorter.
+  std::vector<std::vector<std::string>> unsupported_of_material;
   // Colour variants of the file's materials: variant name to original name.
   std::map<std::string, std::string> variant_of;
   std::vector<MaterialLibrary> libraries;
@@ -94,7 +93,7 @@ struct Mesh {
   // Contents of the file that are not read, with their counts.
   std::map<std::string, std::size_t> unused;
   // Unread contents that would change the picture. Materials count only if an object uses them.
-  std::map<std::string, std::size_t> lacking;
+  std::map<std::string, std::size_t> unsupported;
 };
 
 // Appends a polygon; its corners are vertices of the mesh.

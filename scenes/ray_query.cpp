@@ -168,7 +168,7 @@ double RayQuery::offset_at_m(const Vec3& point) const {
   return point_offset * std::max({from.x, from.y, from.z});
 }
 
-double RayQuery::way_to_bounds_m(const Vec3& from, const Vec3& direction) const {
+double RayQuery::distance_to_bounds_m(const Vec3& from, const Vec3& direction) const {
   const double margin = 1e-3 * far_m_;
   double first = 0.0, last = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -202,10 +202,10 @@ void RayQuery::closest(const RayPacket& rays, std::size_t count, HitPacket& hits
                           {query.ray.dir_x[k], query.ray.dir_y[k], query.ray.dir_z[k]});
     hits.front[k] = front ? 1U : 0U;
     if (coincident_.empty() || !hit) continue;
-    const Vec3 way(rays.direction_x[k], rays.direction_y[k], rays.direction_z[k]);
+    const Vec3 direction(rays.direction_x[k], rays.direction_y[k], rays.direction_z[k]);
     const Vec3 at = centre() + Vec3(rays.origin_x[k], rays.origin_y[k], rays.origin_z[k]) +
-                    double(query.ray.tfar[k]) * way;
-    if (const auto first = coincident_.first_met(hits.triangle[k], at, way)) {
+                    double(query.ray.tfar[k]) * direction;
+    if (const auto first = coincident_.first_met(hits.triangle[k], at, direction)) {
       hits.triangle[k] = first->triangle;
       hits.u[k] = static_cast<float>(first->u);
       hits.v[k] = static_cast<float>(first->v);
@@ -217,7 +217,7 @@ void RayQuery::closest(const RayPacket& rays, std::size_t count, HitPacket& hits
 Hit RayQuery::closest(const Vec3& origin, const Vec3& direction) const {
   RTCRayHit query{};
   Vec3 from = origin - centre();
-  const double start = is_far(from) ? way_to_bounds_m(from, direction) : 0.0;
+  const double start = is_far(from) ? distance_to_bounds_m(from, direction) : 0.0;
   from += start * direction;
   const glm::vec3 o(from), d(direction);
   query.ray.org_x = o.x;
@@ -290,10 +290,10 @@ void RayQuery::light_shares(const RayPacket& rays, const std::uint32_t* mirrors,
   }
   const std::uint32_t hidden = embree_->hidden_bits(query, count, context);
   for (std::size_t k = 0; k < count; ++k) {
-    const bool turns = context.specular_paths != nullptr && mirrors[k] != no_mirror;
+    const bool reflects = context.specular_paths != nullptr && mirrors[k] != no_mirror;
     if (((hidden >> k) & 1U) != 0) {
       shares[k] = Rgb(0.0);
-    } else if (!turns && ((context.met >> k) & 1U) == 0) {
+    } else if (!reflects && ((context.met >> k) & 1U) == 0) {
       shares[k] = Rgb(1.0);
     } else {
       shares[k] = ShadowPath(*this, origin[k], direction[k], double(rays.t_max[k]), mirrors[k])

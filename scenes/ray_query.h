@@ -62,7 +62,7 @@ class RayQuery {
     Vec3 from = origin - centre();
     double start = 0.0;
     if (is_far(from)) {
-      start = way_to_bounds_m(from, direction);
+      start = distance_to_bounds_m(from, direction);
       from += start * direction;
       t_max_m = std::max(0.0, t_max_m - start);
     }
@@ -119,7 +119,7 @@ class RayQuery {
   }
   // Distance along a ray to the scene's bounds, or to the point nearest to the centre if the ray
   // misses them, m.
-  [[nodiscard]] double way_to_bounds_m(const Vec3& from, const Vec3& direction) const;
+  [[nodiscard]] double distance_to_bounds_m(const Vec3& from, const Vec3& direction) const;
 
   std::unique_ptr<Embree> embree_;
   SurfaceOffsets offsets_;

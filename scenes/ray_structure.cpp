@@ -38,10 +38,10 @@ void RayQuery::Embree::pass_shadow(const RTCFilterFunctionNArguments* found) {
     if (found->valid[k] != -1) continue;
     const std::uint32_t triangle = embree.triangle_of(found, k);
     const bool hole = embree.is_hole(found, k, triangle);
-    const bool way =
+    const bool passes =
         shadow.specular_paths != nullptr && shadow.specular_paths->face(triangle) != nullptr;
-    if (!hole && way) shadow.met |= 1U << RTCRayN_id(found->ray, found->N, k);
-    if (hole || way) found->valid[k] = 0;
+    if (!hole && passes) shadow.met |= 1U << RTCRayN_id(found->ray, found->N, k);
+    if (hole || passes) found->valid[k] = 0;
   }
 }
 

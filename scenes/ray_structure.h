@@ -80,9 +80,10 @@ struct RayQuery::Embree {
   [[nodiscard]] bool is_hole(const RTCFilterFunctionNArguments* found, unsigned k,
                              std::uint32_t triangle) const;
   // Whether a ray comes from the front. Embree returns normals in the original's frame.
-  [[nodiscard]] bool is_front(unsigned instance, const glm::vec3& normal, glm::vec3 way) const {
-    if (instance != RTC_INVALID_GEOMETRY_ID) way = placed[instance].to_original * way;
-    return normal.x * way.x + normal.y * way.y + normal.z * way.z < 0.0F;
+  [[nodiscard]] bool is_front(unsigned instance, const glm::vec3& normal,
+                              glm::vec3 direction) const {
+    if (instance != RTC_INVALID_GEOMETRY_ID) direction = placed[instance].to_original * direction;
+    return normal.x * direction.x + normal.y * direction.y + normal.z * direction.z < 0.0F;
   }
 
   static void pass_holes(const RTCFilterFunctionNArguments* found);

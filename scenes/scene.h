@@ -233,7 +233,7 @@ struct AttitudeTable {
   std::string file;
   bool by_time = true;     // `at` is the time since orbit noon, s; otherwise the position, deg
   std::vector<double> at;  // ascending, at least one
-  std::vector<glm::dquat> turns;  // unit quaternions, one for each
+  std::vector<glm::dquat> rotations;  // unit quaternions, one for each
 };
 
 struct Mission;  // scenes/time/mission.h: trajectory and attitude against time

@@ -16,7 +16,7 @@ Rgb ShadowPath::follow(Hit hit) {
       share_ *= face->reflected;
       leave(hit, *face, hit.front);
       const FlatMirror& mirror = query_.specular_paths().mirrors()[mirror_];
-      direction_ = mirror.turned(direction_);
+      direction_ = mirror.reflected(direction_);
       end_ = mirror.image(end_);
       mirror_ = no_mirror;
     } else {
@@ -40,9 +40,9 @@ void ShadowPath::leave(const Hit& hit, const SpecularPaths::Face& face, bool on_
 // At the end of the path: a ray beside the exact line would hit a slanted source too early.
 void ShadowPath::aim_again() {
   if (!std::isfinite(left_m_)) return;
-  const Vec3 way = end_ - origin_;
-  left_m_ = glm::dot(way, direction_) > 0.0 ? glm::length(way) : 0.0;
-  if (left_m_ > 0.0) direction_ = way / left_m_;
+  const Vec3 offset = end_ - origin_;
+  left_m_ = glm::dot(offset, direction_) > 0.0 ? glm::length(offset) : 0.0;
+  if (left_m_ > 0.0) direction_ = offset / left_m_;
 }
 
 }  // namespace earthshine::scenes

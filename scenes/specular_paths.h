@@ -26,14 +26,16 @@ struct FlatMirror {
 
   [[nodiscard]] double height_m(const Vec3& p) const { return glm::dot(p - point, normal); }
   [[nodiscard]] Vec3 image(const Vec3& p) const { return p - 2.0 * height_m(p) * normal; }
-  [[nodiscard]] Vec3 turned(const Vec3& d) const { return d - 2.0 * glm::dot(d, normal) * normal; }
+  [[nodiscard]] Vec3 reflected(const Vec3& d) const {
+    return d - 2.0 * glm::dot(d, normal) * normal;
+  }
 };
 
 // Glass transmits light in a straight line if it is a sheet (two_sided) or has ior = 1.
 [[nodiscard]] bool is_straight_glass(const Material& material);
 // Whether a ray continues in a straight line. A surface that is more mirror than glass reflects it.
-[[nodiscard]] inline bool goes_straight_on(const Vec3& way, const Vec3& onward) {
-  return way == onward;
+[[nodiscard]] inline bool goes_straight_on(const Vec3& incoming, const Vec3& outgoing) {
+  return incoming == outgoing;
 }
 
 // Restart of a ray on its own line, offset_m behind a triangle that transmits it straight, so that

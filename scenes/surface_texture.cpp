@@ -42,7 +42,7 @@ double texels_per_m_of(const Scene& scene, const TextureMap& map, std::uint32_t 
   const glm::dvec2 a(uv[vertex[0]]);
   const glm::dvec2 ab = glm::dvec2(uv[vertex[1]]) - a, ac = glm::dvec2(uv[vertex[2]]) - a;
   const double in_texture =
-      0.5 * std::abs((ab.x * ac.y - ab.y * ac.x) * glm::determinant(map.transform->turn)) *
+      0.5 * std::abs((ab.x * ac.y - ab.y * ac.x) * glm::determinant(map.transform->matrix)) *
       map.texture->width() * map.texture->height();
   return std::sqrt(in_texture / triangle_area(scene, triangle));
 }

@@ -257,7 +257,7 @@ void check_over(const RenderCall& call) {
   };
   if (!over.asked()) {
     if (!over.style && !over.alpha) return;
-    fail(over.style ? "--over-style" : "--over-alpha", "stands without a photograph", "",
+    fail(over.style ? "--over-style" : "--over-alpha", "is given without a photograph", "",
          "Add --over PHOTO.png");
   }
   if (call.png.empty()) fail("--over", "has no file for its picture", "", "Add --png FILE.png");

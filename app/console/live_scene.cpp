@@ -401,7 +401,7 @@ std::optional<std::string> LiveScene::draw(const LiveRequest& request) {
   const auto start = std::chrono::steady_clock::now();
   const std::uint64_t number = ++newest_;
   Interrupt::ask(true);  // ends an older picture
-  const std::lock_guard<std::mutex> turn(turn_);
+  const std::lock_guard<std::mutex> lock(drawing_);
   if (number != newest_) return std::nullopt;
   Interrupt::ask(false);
   apply(request);

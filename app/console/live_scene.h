@@ -80,7 +80,7 @@ class LiveScene {
   Json description_;
   std::optional<Solved> light_;  // the latest, of `light_set_` and the files as they are read
   Set light_set_;
-  std::mutex turn_;
+  std::mutex drawing_;
   std::atomic<std::uint64_t> newest_ = 0;
 };
 

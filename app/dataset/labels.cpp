@@ -56,9 +56,9 @@ std::array<double, 3> keypoint(const LabelCall& call, const Vec3& point) {
   const Vec3 in_camera = call.camera.to_camera(point);
   if (!call.camera.projection.shows(in_camera)) return {0.0, 0.0, 0.0};
   const glm::dvec2 film = call.camera.film_from(call.camera.position, point);
-  const Vec3 way = point - call.camera.position;
-  const double distance = glm::length(way);
-  const scenes::Hit hit = call.query.closest(call.camera.position, way / distance);
+  const Vec3 offset = point - call.camera.position;
+  const double distance = glm::length(offset);
+  const scenes::Hit hit = call.query.closest(call.camera.position, offset / distance);
   // The point lies on a surface, or a little inside of it.
   const double slack = 1e-3 * distance;
   return {film.x - 0.5, film.y - 0.5, hit.missed() || hit.t >= distance - slack ? 2.0 : 1.0};
@@ -141,23 +141,23 @@ Json labels_of(const LabelCall& call, const std::vector<studies::TargetView>& vi
   const raytrace::CameraMatrices matrices = camera_matrices(call.camera);
   // World to camera: the transpose of the rotation in to_world, by rows.
   const auto& m = matrices.to_world;
-  const glm::dmat3 turn(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]);
-  const Vec3 shift = -(turn * call.camera.position);
+  const glm::dmat3 rotation(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]);
+  const Vec3 shift = -(rotation * call.camera.position);
   std::array<double, 9> k = matrices.k;
   k[2] -= 0.5;  // OpenCV's pixels have whole numbers at their centres
   k[5] -= 0.5;
   Json labels;
   labels["scene_camera"] = {{"cam_K", k},
                             {"depth_scale", call.depth_scale_mm},
-                            {"cam_R_w2c", by_rows(turn)},
+                            {"cam_R_w2c", by_rows(rotation)},
                             {"cam_t_w2c", {mm * shift.x, mm * shift.y, mm * shift.z}}};
   for (const char* list : {"scene_gt", "scene_gt_info", "annotations"}) {
     labels[list] = Json::array();
   }
   for (std::size_t t = 0; t < views.size(); ++t) {
     const scenes::Pose& pose = call.model_to_scene[t];
-    const Vec3 at = turn * pose.offset_m + shift;
-    labels["scene_gt"].push_back({{"cam_R_m2c", by_rows(turn * pose.rotation)},
+    const Vec3 at = rotation * pose.offset_m + shift;
+    labels["scene_gt"].push_back({{"cam_R_m2c", by_rows(rotation * pose.rotation)},
                                   {"cam_t_m2c", {mm * at.x, mm * at.y, mm * at.z}},
                                   {"obj_id", t + 1}});
     const auto count = [](const MaskPixels& mask) {

@@ -131,12 +131,12 @@ DrawnTarget read_target(const TomlNode& node) {
   DrawnTarget target;
   target.name = table.read_name();
   target.moves = table.has("low") || table.has("high");
-  target.turns = table.flag("turns").value_or(false);
+  target.random_attitude = table.flag("turns").value_or(false);
   if (target.moves) {
     target.low = table.required(table.position("low", 1.0), "low", "low = [x, y, z]  # m");
     target.high = table.required(table.position("high", 1.0), "high", "high = [x, y, z]  # m");
-  } else if (target.turns) {
-    table.fail("turns", "stands without \"low\" and \"high\"",
+  } else if (target.random_attitude) {
+    table.fail("turns", "is given without \"low\" and \"high\"",
                "a target that turns has a place too, which may be one point");
   }
   for (const TomlNode* entry : named_entries(table, "point")) {
@@ -316,7 +316,7 @@ Draw draw_values(const Recipe& recipe, std::size_t image) {
     if (target.moves) {
       base::Rng rng = draws_of(recipe, image, "target " + target.name);
       pose.translate_m = within(rng, target.low, target.high);
-      if (target.turns) pose.rotate_deg = any_attitude(rng);
+      if (target.random_attitude) pose.rotate_deg = any_attitude(rng);
       draw.overrides.push_back(fmt::format("object.{}.translate={}", target.name,
                                            vector_text(pose.translate_m / recipe.unit_m)));
       draw.overrides.push_back(
@@ -365,10 +365,10 @@ CameraPose draw_camera(const Recipe& recipe, std::size_t image, std::size_t atte
       }
       double along = rng.next() * length;
       for (std::size_t k = 1; k < camera.points.size(); ++k) {
-        const Vec3 way = camera.points[k] - camera.points[k - 1];
-        const double step = glm::length(way);
+        const Vec3 segment = camera.points[k] - camera.points[k - 1];
+        const double step = glm::length(segment);
         pose.position =
-            camera.points[k - 1] + (step > 0.0 ? std::min(1.0, along / step) : 0.0) * way;
+            camera.points[k - 1] + (step > 0.0 ? std::min(1.0, along / step) : 0.0) * segment;
         if (along <= step) break;
         along -= step;
       }

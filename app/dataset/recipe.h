@@ -31,9 +31,9 @@ struct KeyPoint {
 
 struct DrawnTarget {
   std::string name;
-  bool moves = false;        // else it stays where the scene has it
-  Vec3 low{0.0}, high{0.0};  // m, of translate
-  bool turns = false;        // to any attitude, all equally likely
+  bool moves = false;            // else it stays where the scene has it
+  Vec3 low{0.0}, high{0.0};      // m, of translate
+  bool random_attitude = false;  // to any attitude, all equally likely
   std::vector<KeyPoint> points;
 };
 

@@ -77,13 +77,13 @@ double fastest_px_s(const scenes::Scene& scene, const raytrace::CameraModel& cam
   for (const scenes::Object& object : scene.objects) {
     if (!object.motion.moves()) continue;
     const Vec3 about = scenes::spin_centre(scene, object);
-    const Vec3 turn = base::radians(1.0) * object.motion.spin_deg_s;
+    const Vec3 angular_velocity = base::radians(1.0) * object.motion.spin_deg_s;
     for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
       const auto [a, b, c] = scenes::corners_of(scene, object.first_triangle + k);
       double speed = 0.0;
       for (const Vec3& corner : {a, b, c}) {
-        speed = std::max(
-            speed, glm::length(object.motion.velocity_m_s + glm::cross(turn, corner - about)));
+        speed = std::max(speed, glm::length(object.motion.velocity_m_s +
+                                            glm::cross(angular_velocity, corner - about)));
       }
       add(speed, scenes::nearest_on_triangle(camera.position, a, b, c),
           scale.px_per_rad({a, b, c}));

@@ -37,14 +37,15 @@ bool begins_isolate(unsigned code) { return code >= 0x2066 && code <= 0x2068; }
 // Whether the text may be written from right to left: marks, embeddings, overrides and isolates;
 // letters from Hebrew to Arabic Extended-A and their presentation forms; all characters of four
 // bytes, among them the ancient scripts of the Near East.
-bool may_turn(std::string_view text) {
+bool may_be_right_to_left(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t length = std::max<std::size_t>(1, base::utf8_length(text.substr(at)));
     const unsigned code = code_of(text.substr(at, length));
-    const bool turns = length == 4 || (code >= 0x590 && code <= 0x8FF) ||
-                       (code >= 0x200E && code <= 0x200F) || (code >= 0x202A && code <= 0x202E) ||
-                       (code >= 0x2066 && code <= 0x2069) || (code >= 0xFB1D && code <= 0xFEFC);
-    if (turns) return true;
+    const bool right_to_left =
+        length == 4 || (code >= 0x590 && code <= 0x8FF) || (code >= 0x200E && code <= 0x200F) ||
+        (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069) ||
+        (code >= 0xFB1D && code <= 0xFEFC);
+    if (right_to_left) return true;
     at += length;
   }
   return false;
@@ -55,7 +56,7 @@ bool may_turn(std::string_view text) {
 std::string escaped(std::string_view text) {
   std::string html;
   html.reserve(text.size() + text.size() / 8);
-  const bool isolated = may_turn(text);
+  const bool isolated = may_be_right_to_left(text);
   if (isolated) html += first_strong_isolate;
   std::size_t open = 0;  // open isolates in the text itself
   for (std::size_t at = 0; at < text.size();) {

@@ -12,10 +12,10 @@ namespace {
 
 using studies::Verdict;
 
-double turn_deg(double angle_deg) { return angle_deg - 360.0 * std::floor(angle_deg / 360.0); }
+double wrapped_deg(double angle_deg) { return angle_deg - 360.0 * std::floor(angle_deg / 360.0); }
 
 std::string angle_text(double angle_deg) {
-  const double rounded = std::round(turn_deg(angle_deg));
+  const double rounded = std::round(wrapped_deg(angle_deg));
   return fmt::format("{:.0f}", rounded >= 360.0 ? 0.0 : rounded);
 }
 

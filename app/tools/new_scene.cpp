@@ -67,7 +67,7 @@ std::vector<std::uint32_t> finest_parts(const scenes::Mesh& mesh) {
 }
 
 // part: scenes::no_index for the whole mesh.
-MeshPart describe_part(const scenes::Mesh& mesh, std::uint32_t part, bool turn_up) {
+MeshPart describe_part(const scenes::Mesh& mesh, std::uint32_t part, bool y_to_z) {
   MeshPart found;
   std::vector<Vec3> corners;
   for (const scenes::MeshPolygon& polygon : mesh.polygons) {
@@ -77,7 +77,7 @@ MeshPart describe_part(const scenes::Mesh& mesh, std::uint32_t part, bool turn_u
     ++found.polygons;
     for (std::uint32_t k = 0; k < polygon.count; ++k) {
       const Vec3& v = mesh.vertices[mesh.indices[polygon.first + k]];
-      corners.push_back(turn_up ? Vec3(v.x, -v.z, v.y) : v);
+      corners.push_back(y_to_z ? Vec3(v.x, -v.z, v.y) : v);
     }
     if (polygon.material == scenes::no_index) {
       found.lacks_material = true;
@@ -102,11 +102,11 @@ class SceneText {
         path.is_absolute() ? path.string() : fs::relative(path, beside).generic_string();
     scenes::Mesh mesh = scenes::read_mesh(path, beside, base::Location{path.string()});
     // For a file with +Y up, which would lie on its side in a scene.
-    const bool turn_up = mesh.is_y_up && !mesh.is_own;
+    const bool y_to_z = mesh.is_y_up && !mesh.is_own;
     std::vector<std::uint32_t> parts = finest_parts(mesh);
     if (parts.size() < 2) parts = {scenes::no_index};
     for (const std::uint32_t part : parts) {
-      add_object(mesh, named, path.stem().string(), describe_part(mesh, part, turn_up), turn_up);
+      add_object(mesh, named, path.stem().string(), describe_part(mesh, part, y_to_z), y_to_z);
     }
     for (const std::string& material : worn_) {
       const std::uint32_t own = scenes::find_mesh_material(mesh, material, beside);
@@ -138,7 +138,7 @@ class SceneText {
 
  private:
   void add_object(const scenes::Mesh& mesh, const std::string& file, const std::string& stem,
-                  const MeshPart& part, bool turn_up) {
+                  const MeshPart& part, bool y_to_z) {
     std::string name = part.name.empty() ? stem : part.name;
     if (names_.contains(name)) name = stem + "-" + name;
     for (int k = 2; names_.contains(name); ++k) name = fmt::format("{}-{}", stem, k);
@@ -147,7 +147,7 @@ class SceneText {
                             part.polygons, numbers(part.bounds.low), numbers(part.bounds.high),
                             toml_text(name), toml_text(file));
     if (!part.name.empty()) objects_ += fmt::format("part = {}\n", toml_text(part.name));
-    if (turn_up) objects_ += "axes = \"y-up\"  # the file's y becomes z\n";
+    if (y_to_z) objects_ += "axes = \"y-up\"  # the file's y becomes z\n";
     if (mesh.metres) objects_ += "# lengths of this format are metres\n";
     if (part.lacks_material) {
       objects_ += fmt::format("material = \"{}\"  # the file gives none\n", plain_material);

@@ -112,22 +112,22 @@ void find_cameras(const studies::StudyFile& study, const std::vector<const scene
 }
 
 // Error for a study whose route does not suit the scene.
-[[noreturn]] void refuse_way(const studies::StudyFile& study, const StudyPart& part,
-                             const char* key, const std::string& found, const char* allowed,
-                             const char* remedy) {
+[[noreturn]] void refuse_section(const studies::StudyFile& study, const StudyPart& part,
+                                 const char* key, const std::string& found, const char* allowed,
+                                 const char* remedy) {
   const bool in_file = study.where.contains(key);
   throw Error(Blame::Input, in_file ? study.place(key) : base::Location{part.path},
               (in_file ? part.path + " " : "") + found, allowed, remedy);
 }
 
 // The places of a study and, where any moves, the pose of the joints at each of them.
-struct StudyWay {
+struct StudyInstants {
   std::vector<studies::SkyPlace> places;
   std::vector<double> positions_deg, times_s;
   std::vector<scenes::Instant> moments;
   std::vector<std::vector<scenes::JointState>> joints;
 
-  [[nodiscard]] StudyWay part(std::size_t first, std::size_t last) const {
+  [[nodiscard]] StudyInstants part(std::size_t first, std::size_t last) const {
     const auto cut = [&](const auto& list) {
       if (list.empty()) return list;
       return std::decay_t<decltype(list)>(list.begin() + static_cast<std::ptrdiff_t>(first),
@@ -140,41 +140,41 @@ struct StudyWay {
 Vec3 sun_of(const scenes::Scene& sky) { return sky.sun ? sky.sun->direction : Vec3(0.0, 0.0, 1.0); }
 
 // Sun and Earth, and the pose of all joints, at each moment.
-StudyWay find_moments(const studies::StudyFile& study, const scenes::Mission& mission,
-                      scenes::Scene& sky, const StudyPart& part) {
+StudyInstants find_moments(const studies::StudyFile& study, const scenes::Mission& mission,
+                           scenes::Scene& sky, const StudyPart& part) {
   if (!study.time && !mission.has_span) {
-    refuse_way(study, part, "orbit", "has a trajectory and no [time] to go along", "",
-               "Write [time] with start, stop and step");
+    refuse_section(study, part, "orbit", "has a trajectory and no [time] to go along", "",
+                   "Write [time] with start, stop and step");
   }
   const scenes::TimeSpan span = study.time.value_or(mission.time);
   const scenes::Linkage* const linkage = part.loaded.scene.linkage.get();
-  StudyWay way;
+  StudyInstants instants;
   for (std::size_t k = 0; k < span.count(); ++k) {
     scenes::move_to_moment(sky, span.at(k));
-    way.places.push_back(studies::sky_of(sky));
+    instants.places.push_back(studies::sky_of(sky));
     double position = sky.orbit->position_deg;
     if (k > 0) {
       const double expected =
-          way.positions_deg.back() + scenes::revolved_deg(mission, span.at(k - 1), span.at(k));
+          instants.positions_deg.back() + scenes::revolved_deg(mission, span.at(k - 1), span.at(k));
       position = expected + std::remainder(position - expected, 360.0);
     }
-    way.positions_deg.push_back(position);
-    way.times_s.push_back(span.at(k) - span.start);
-    way.moments.push_back(span.at(k));
+    instants.positions_deg.push_back(position);
+    instants.times_s.push_back(span.at(k) - span.start);
+    instants.moments.push_back(span.at(k));
     if (linkage != nullptr && linkage->moves()) {
-      way.joints.push_back(linkage->at(&mission, span.at(k), sun_of(sky)));
+      instants.joints.push_back(linkage->at(&mission, span.at(k), sun_of(sky)));
     }
   }
-  return way;
+  return instants;
 }
 
 // Sun and Earth at each position, and when.
-StudyWay find_way(const studies::StudyFile& study, const StudyPart& part) {
+StudyInstants find_instants(const studies::StudyFile& study, const StudyPart& part) {
   const scenes::Scene& scene = part.loaded.scene;
-  StudyWay way;
+  StudyInstants instants;
   if (study.positions_deg.empty() && !study.time) {
-    way.places = {studies::sky_of(scene)};
-    return way;
+    instants.places = {studies::sky_of(scene)};
+    return instants;
   }
   scenes::Scene sky;  // without surfaces: cheap to move
   sky.sun = scene.sun;
@@ -185,29 +185,30 @@ StudyWay find_way(const studies::StudyFile& study, const StudyPart& part) {
     return find_moments(study, *mission, sky, part);
   }
   if (mission != nullptr) {
-    refuse_way(study, part, "orbit", "has a trajectory, along which positions in degrees are none",
-               "a study of it goes along [time]", "Write [time] with start, stop and step");
+    refuse_section(study, part, "orbit",
+                   "has a trajectory, along which positions in degrees are none",
+                   "a study of it goes along [time]", "Write [time] with start, stop and step");
   }
   if (study.time) {
-    refuse_way(study, part, "time", "has no trajectory, so that there is no time to go along", "",
-               "Write [orbit] with trajectory = \"FILE.oem\" in the scene");
+    refuse_section(study, part, "time", "has no trajectory, so that there is no time to go along",
+                   "", "Write [orbit] with trajectory = \"FILE.oem\" in the scene");
   }
   if (!scene.orbit) {
-    refuse_way(study, part, "orbit", "has no [orbit], so that there is nothing to go along",
-               "a study with positions needs a scene with [orbit]",
-               "Add [orbit] with altitude_km, or leave the positions out");
+    refuse_section(study, part, "orbit", "has no [orbit], so that there is nothing to go along",
+                   "a study with positions needs a scene with [orbit]",
+                   "Add [orbit] with altitude_km, or leave the positions out");
   }
   const scenes::Linkage* const linkage = scene.linkage.get();
   for (const double position : study.positions_deg) {
     scenes::move_along_orbit(sky, position);
     if (linkage != nullptr && linkage->moves()) {  // what follows the Sun
-      way.joints.push_back(linkage->at(nullptr, {}, sun_of(sky)));
+      instants.joints.push_back(linkage->at(nullptr, {}, sun_of(sky)));
     }
-    way.places.push_back(studies::sky_of(sky));
-    way.positions_deg.push_back(position);
-    way.times_s.push_back(scenes::orbit_state(*scene.orbit, position).time_s);
+    instants.places.push_back(studies::sky_of(sky));
+    instants.positions_deg.push_back(position);
+    instants.times_s.push_back(scenes::orbit_state(*scene.orbit, position).time_s);
   }
-  return way;
+  return instants;
 }
 
 // Warns if the scene has light but no condition of the study does.
@@ -248,15 +249,15 @@ std::string place_text(const std::vector<double>& positions_deg,
 namespace {
 
 // Runs of moments in one pose of all joints: where each begins, and the end of all.
-std::vector<std::size_t> runs_of(const StudyWay& way) {
+std::vector<std::size_t> runs_of(const StudyInstants& instants) {
   std::vector<std::size_t> begins = {0};
-  for (std::size_t k = 1; k < way.joints.size(); ++k) {
+  for (std::size_t k = 1; k < instants.joints.size(); ++k) {
     const auto same = [](const scenes::JointState& a, const scenes::JointState& b) {
       return a.pose == b.pose;
     };
-    if (!std::ranges::equal(way.joints[k - 1], way.joints[k], same)) begins.push_back(k);
+    if (!std::ranges::equal(instants.joints[k - 1], instants.joints[k], same)) begins.push_back(k);
   }
-  begins.push_back(way.places.size());
+  begins.push_back(instants.places.size());
   return begins;
 }
 
@@ -281,17 +282,17 @@ void leave_night_lights_out(StudyPart& part, bool quiet) {
 }
 
 // The times, or positions, of one of several poses.
-std::string times_of(const StudyWay& way) {
+std::string times_of(const StudyInstants& instants) {
   const auto at = [&](std::size_t k) {
-    return place_text(way.positions_deg, way.moments, way.positions_deg[k]);
+    return place_text(instants.positions_deg, instants.moments, instants.positions_deg[k]);
   };
-  const std::size_t last = way.positions_deg.size() - 1;
+  const std::size_t last = instants.positions_deg.size() - 1;
   return last == 0 ? at(0) : at(0) + " to " + at(last);
 }
 
 // The scene's surfaces, cameras and lights for that way; one_pose: of several.
-void fill_part(const studies::StudyFile& study, const Common& common, StudyWay way, bool one_pose,
-               StudyPart& part) {
+void fill_part(const studies::StudyFile& study, const Common& common, StudyInstants instants,
+               bool one_pose, StudyPart& part) {
   scenes::Scene& scene = part.loaded.scene;
   scenes::hold_still(scene);
   add_cctv(study, scene);
@@ -301,22 +302,22 @@ void fill_part(const studies::StudyFile& study, const Common& common, StudyWay w
   }
   check_wanted(study, part);
   if (scene.linkage) part.pose = scenes::pose_text(scene);
-  if (way.places.size() > 1) leave_night_lights_out(part, common.quiet);
+  if (instants.places.size() > 1) leave_night_lights_out(part, common.quiet);
   scenes::SceneUse use;
   use.cameras = chosen_cameras(study, scene);
   use.moves_along_orbit = !study.positions_deg.empty() || study.time;
   part.query = std::make_unique<const scenes::RayQuery>(
       scene,
       part.first_pose != nullptr ? std::optional(part.first_pose->query->centre()) : std::nullopt);
-  if (one_pose) part.skipped_at = times_of(way);
+  if (one_pose) part.skipped_at = times_of(instants);
   part.skipped =
       skip_hidden_cameras(scene, *part.query, use.cameras, common.quiet, part.skipped_at);
   check_input(part.loaded, *part.query, use, common.quiet);
   find_cameras(study, use.cameras, common, part);
-  part.positions_deg = std::move(way.positions_deg);
-  part.times_s = std::move(way.times_s);
-  part.moments = std::move(way.moments);
-  part.basis = std::make_unique<const studies::LightBasis>(scene, std::move(way.places),
+  part.positions_deg = std::move(instants.positions_deg);
+  part.times_s = std::move(instants.times_s);
+  part.moments = std::move(instants.moments);
+  part.basis = std::make_unique<const studies::LightBasis>(scene, std::move(instants.places),
                                                            study.lamps, study.basis);
   name_darkness(part, common.quiet);
   scenes::Asked asked;
@@ -348,27 +349,28 @@ StudyParts prepare_parts(const studies::StudyFile& study, std::size_t index, con
     if (study.where.contains(key)) base::check_input_file(first->path, study.place(key));
   }
   first->loaded = load(input_of(study, *first), common.quiet);
-  const StudyWay way = find_way(study, *first);
-  const std::vector<std::size_t> begins = runs_of(way);
+  const StudyInstants instants = find_instants(study, *first);
+  const std::vector<std::size_t> begins = runs_of(instants);
   for (std::size_t run = 0; run + 1 < begins.size(); ++run) {
     auto part = std::make_unique<StudyPart>();
     part->id = run == 0 ? first->id : fmt::format("{}-p{}", first->id, run);
     part->scene = index;
     part->path = first->path;
     // A scene's Moon and joints are those of its moment.
-    const bool moon_of_moment = first->loaded.scene.moon && way.moments.size() == 1;
-    if (way.joints.empty() && !moon_of_moment) {
+    const bool moon_of_moment = first->loaded.scene.moon && instants.moments.size() == 1;
+    if (instants.joints.empty() && !moon_of_moment) {
       part->loaded = std::move(first->loaded);
     } else {
       SceneInput input = input_of(study, *first);
       const std::size_t at = begins[run];
-      input.overrides.push_back(way.moments.empty()
-                                    ? fmt::format("orbit.position_deg={}", way.positions_deg[at])
-                                    : "time.moment=" + scenes::utc_text(way.moments[at]));
+      input.overrides.push_back(
+          instants.moments.empty()
+              ? fmt::format("orbit.position_deg={}", instants.positions_deg[at])
+              : "time.moment=" + scenes::utc_text(instants.moments[at]));
       part->loaded = load(input, common.quiet || run > 0);
     }
     if (run > 0) part->first_pose = parts.front().get();
-    fill_part(study, common, way.part(begins[run], begins[run + 1]), begins.size() > 2, *part);
+    fill_part(study, common, instants.part(begins[run], begins[run + 1]), begins.size() > 2, *part);
     parts.push_back(std::move(part));
   }
   if (std::ranges::all_of(parts, [](const auto& part) { return part->cameras.empty(); })) {

@@ -40,55 +40,64 @@ bool has_lamps(const studies::LightBasis& basis, std::size_t setting) {
   return on.weight != off.weight;
 }
 
-std::string at(const ViewingConfiguration& way, double position_deg) {
+std::string at(const ViewingConfiguration& configuration, double position_deg) {
   std::vector<scenes::Instant> moments;
-  for (const double tai_s : way.tai_s) moments.push_back({tai_s});
-  return place_text(way.positions_deg, moments, position_deg);
+  for (const double tai_s : configuration.tai_s) moments.push_back({tai_s});
+  return place_text(configuration.positions_deg, moments, position_deg);
 }
 
-std::string arcs_text(const ViewingConfiguration& way, const std::vector<studies::Arc>& arcs) {
-  if (way.tai_s.empty()) return app::arcs_text(arcs);
+std::string arcs_text(const ViewingConfiguration& configuration,
+                      const std::vector<studies::Arc>& arcs) {
+  if (configuration.tai_s.empty()) return app::arcs_text(arcs);
   std::string text;
   for (const auto& [from, to] : arcs) {
-    text += fmt::format("{}{} to {}", text.empty() ? "" : ", ", at(way, from), at(way, to));
+    text += fmt::format("{}{} to {}", text.empty() ? "" : ", ", at(configuration, from),
+                        at(configuration, to));
   }
   return text;
 }
 
-std::string way_text(const ViewingConfiguration& way) {
-  return fmt::format("camera {}{}, lamps {}{}", way.camera,
-                     way.iris.empty() ? "" : " with iris " + way.iris, way.lamps,
-                     way.scene.empty() ? "" : ", in " + way.scene);
+std::string configuration_text(const ViewingConfiguration& configuration) {
+  return fmt::format("camera {}{}, lamps {}{}", configuration.camera,
+                     configuration.iris.empty() ? "" : " with iris " + configuration.iris,
+                     configuration.lamps,
+                     configuration.scene.empty() ? "" : ", in " + configuration.scene);
 }
 
 struct Rated {
-  const ViewingConfiguration* way = nullptr;
+  const ViewingConfiguration* configuration = nullptr;
   std::vector<studies::Arc> arcs;
   double reach = -1.0;  // share of the orbit, or 1 for a single position that suffices
   double best = 0.0;    // highest probability
 };
 
-Rated rate(const ViewingConfiguration& way, double wanted, bool closed) {
-  Rated rated{&way, {}, 0.0, *std::max_element(way.detect.begin(), way.detect.end())};
-  const auto seen =
-      std::count_if(way.detect.begin(), way.detect.end(), [&](double p) { return p >= wanted; });
-  rated.reach = static_cast<double>(seen) / static_cast<double>(way.detect.size());
-  if (way.positions_deg.empty()) return rated;
-  rated.arcs = studies::arcs_above(way.positions_deg, way.detect, wanted, closed);
+Rated rate(const ViewingConfiguration& configuration, double wanted, bool closed) {
+  Rated rated{&configuration,
+              {},
+              0.0,
+              *std::max_element(configuration.detect.begin(), configuration.detect.end())};
+  const auto seen = std::count_if(configuration.detect.begin(), configuration.detect.end(),
+                                  [&](double p) { return p >= wanted; });
+  rated.reach = static_cast<double>(seen) / static_cast<double>(configuration.detect.size());
+  if (configuration.positions_deg.empty()) return rated;
+  rated.arcs =
+      studies::arcs_above(configuration.positions_deg, configuration.detect, wanted, closed);
   if (closed) rated.reach = studies::total_deg(rated.arcs) / 360.0;
   return rated;
 }
 
 // The lamp factor required where Sun and Earth give least.
-std::string lamps_of(const ViewingConfiguration& way, double wanted) {
-  const std::string where =
-      way.darkest_deg ? fmt::format("at {}, where it is darkest, ", at(way, *way.darkest_deg)) : "";
-  const std::string by = fmt::format(" For {}, {}", way_text(way), where);
-  if (!way.least_factor) {
+std::string lamps_of(const ViewingConfiguration& configuration, double wanted) {
+  const std::string where = configuration.darkest_deg
+                                ? fmt::format("at {}, where it is darkest, ",
+                                              at(configuration, *configuration.darkest_deg))
+                                : "";
+  const std::string by = fmt::format(" For {}, {}", configuration_text(configuration), where);
+  if (!configuration.least_factor) {
     return fmt::format("{}no lamps up to {:g} times as bright bring it to {:g}.", by,
                        studies::most_lamp_factor, wanted);
   }
-  const double factor = *way.least_factor;
+  const double factor = *configuration.least_factor;
   if (factor <= 0.0) return by + "no lamps are needed.";
   if (factor >= 1.0) return fmt::format("{}the lamps must be {:.2g} times as bright.", by, factor);
   return fmt::format("{}the lamps could be dimmed to {}{} %.", by,
@@ -97,14 +106,15 @@ std::string lamps_of(const ViewingConfiguration& way, double wanted) {
 }
 
 // For the answer's own configuration; also another one if it needs less.
-std::string lamp_text(const std::vector<ViewingConfiguration>& ways,
+std::string lamp_text(const std::vector<ViewingConfiguration>& configurations,
                       const ViewingConfiguration& own, double wanted) {
   const ViewingConfiguration* least = nullptr;
   const ViewingConfiguration* tried = own.tried_factors ? &own : nullptr;
-  for (const ViewingConfiguration& way : ways) {
-    if (tried == nullptr && way.tried_factors) tried = &way;
-    if (way.least_factor && (least == nullptr || *way.least_factor < *least->least_factor)) {
-      least = &way;
+  for (const ViewingConfiguration& configuration : configurations) {
+    if (tried == nullptr && configuration.tried_factors) tried = &configuration;
+    if (configuration.least_factor &&
+        (least == nullptr || *configuration.least_factor < *least->least_factor)) {
+      least = &configuration;
     }
   }
   if (tried == nullptr) return "";
@@ -134,7 +144,7 @@ std::vector<std::string> modes_of(const studies::StudyFile& study, const StudyCa
 
 void add_configurations(const StudyPart& part, const studies::StudyFile& study,
                         const StudyCamera& camera, const studies::BasisView& view,
-                        std::vector<std::vector<ViewingConfiguration>>& ways) {
+                        std::vector<std::vector<ViewingConfiguration>>& configurations) {
   if (study.wanted.empty()) return;
   const studies::LightBasis& basis = *part.basis;
   const std::size_t places = basis.places().size();
@@ -155,64 +165,70 @@ void add_configurations(const StudyPart& part, const studies::StudyFile& study,
         const auto target = static_cast<std::size_t>(named - part.targets.begin());
         const std::size_t darkest = darkest_place(basis, setting, view.targets[target].by_group);
         const bool tries = lamps && view.plan.targets[target].view.in_view();
-        ViewingConfiguration way{study.scenes.size() > 1 ? part.path : "",
-                                 camera.camera->name,
-                                 iris,
-                                 basis.settings()[setting].name,
-                                 {},
-                                 part.positions_deg,
-                                 {},
-                                 {},
-                                 {},
-                                 tries};
-        for (const std::vector<double>& at_place : detect) way.detect.push_back(at_place[target]);
-        for (const scenes::Instant& moment : part.moments) way.tai_s.push_back(moment.tai_s);
-        if (!part.positions_deg.empty()) way.darkest_deg = part.positions_deg[darkest];
+        ViewingConfiguration configuration{study.scenes.size() > 1 ? part.path : "",
+                                           camera.camera->name,
+                                           iris,
+                                           basis.settings()[setting].name,
+                                           {},
+                                           part.positions_deg,
+                                           {},
+                                           {},
+                                           {},
+                                           tries};
+        for (const std::vector<double>& at_place : detect)
+          configuration.detect.push_back(at_place[target]);
+        for (const scenes::Instant& moment : part.moments)
+          configuration.tai_s.push_back(moment.tai_s);
+        if (!part.positions_deg.empty()) configuration.darkest_deg = part.positions_deg[darkest];
         if (tries) {
-          way.least_factor = studies::least_factor(
+          configuration.least_factor = studies::least_factor(
               [&](double factor) {
                 return studies::detections(basis, view, darkest, setting, factor, cctv)[target];
               },
               study.wanted[w].probability);
         }
-        ways[w].push_back(std::move(way));
+        configurations[w].push_back(std::move(configuration));
       }
     }
   }
 }
 
-void add_configuration(std::vector<ViewingConfiguration>& ways, const ViewingConfiguration& way) {
-  const auto same = std::find_if(ways.begin(), ways.end(), [&](const ViewingConfiguration& w) {
-    return !w.positions_deg.empty() && w.scene == way.scene && w.camera == way.camera &&
-           w.iris == way.iris && w.lamps == way.lamps;
-  });
-  if (same == ways.end()) {
-    ways.push_back(way);
+void add_configuration(std::vector<ViewingConfiguration>& configurations,
+                       const ViewingConfiguration& configuration) {
+  const auto same = std::find_if(
+      configurations.begin(), configurations.end(), [&](const ViewingConfiguration& w) {
+        return !w.positions_deg.empty() && w.scene == configuration.scene &&
+               w.camera == configuration.camera && w.iris == configuration.iris &&
+               w.lamps == configuration.lamps;
+      });
+  if (same == configurations.end()) {
+    configurations.push_back(configuration);
     return;
   }
   const auto append = [](auto& list, const auto& more) {
     list.insert(list.end(), more.begin(), more.end());
   };
-  append(same->detect, way.detect);
-  append(same->positions_deg, way.positions_deg);
-  append(same->tai_s, way.tai_s);
-  if (!way.tried_factors) return;
+  append(same->detect, configuration.detect);
+  append(same->positions_deg, configuration.positions_deg);
+  append(same->tai_s, configuration.tai_s);
+  if (!configuration.tried_factors) return;
   // The pose that needs most decides; without a factor no lamps are enough.
   const bool needs_more =
       !same->tried_factors ||
-      (same->least_factor && (!way.least_factor || *way.least_factor > *same->least_factor));
+      (same->least_factor &&
+       (!configuration.least_factor || *configuration.least_factor > *same->least_factor));
   if (needs_more) {
-    same->least_factor = way.least_factor;
-    same->darkest_deg = way.darkest_deg;
+    same->least_factor = configuration.least_factor;
+    same->darkest_deg = configuration.darkest_deg;
   }
   same->tried_factors = true;
 }
 
 AnswerEntry answer_of(const studies::WantedTarget& wanted, const studies::StudyFile& study,
-                      const std::vector<ViewingConfiguration>& ways) {
+                      const std::vector<ViewingConfiguration>& configurations) {
   Rated best;
-  for (const ViewingConfiguration& way : ways) {
-    Rated rated = rate(way, wanted.probability, study.timeline);
+  for (const ViewingConfiguration& configuration : configurations) {
+    Rated rated = rate(configuration, wanted.probability, study.timeline);
     if (rated.reach > best.reach || (rated.reach == best.reach && rated.best > best.best)) {
       best = std::move(rated);
     }
@@ -221,21 +237,21 @@ AnswerEntry answer_of(const studies::WantedTarget& wanted, const studies::StudyF
   answer.wanted = wanted.text;
   answer.target = wanted.target;
   answer.least = wanted.probability;
-  if (best.way == nullptr) {
+  if (best.configuration == nullptr) {
     answer.text = fmt::format("Nothing was looked at for {}.", wanted.target);
     return answer;
   }
-  const ViewingConfiguration& way = *best.way;
-  answer.camera = way.camera;
-  answer.iris = way.iris;
-  answer.lamps = way.lamps;
-  answer.scene = way.scene;
+  const ViewingConfiguration& configuration = *best.configuration;
+  answer.camera = configuration.camera;
+  answer.iris = configuration.iris;
+  answer.lamps = configuration.lamps;
+  answer.scene = configuration.scene;
   answer.best_probability = best.best;
-  answer.least_factor = way.least_factor;
-  if (way.least_factor) answer.darkest_deg = way.darkest_deg;
+  answer.least_factor = configuration.least_factor;
+  if (configuration.least_factor) answer.darkest_deg = configuration.darkest_deg;
   for (const auto& [from, to] : best.arcs) {
-    const double turns = 360.0 * std::floor(from / 360.0);
-    answer.arcs_deg.emplace_back(from - turns, to - turns);
+    const double revolutions_deg = 360.0 * std::floor(from / 360.0);
+    answer.arcs_deg.emplace_back(from - revolutions_deg, to - revolutions_deg);
   }
   answer.found = best.best >= wanted.probability;
   std::string text;
@@ -244,17 +260,18 @@ AnswerEntry answer_of(const studies::WantedTarget& wanted, const studies::StudyF
         "None of the cameras, iris modes and lamp settings detects {} with {:g} or more{}: at best "
         "{:.2g}, by {}.",
         wanted.target, wanted.probability,
-        way.positions_deg.empty() ? "" : " at any of the positions", best.best, way_text(way));
-  } else if (way.positions_deg.empty()) {
-    text =
-        fmt::format("{} is detected with {:.2g}, by {}.", wanted.target, best.best, way_text(way));
+        configuration.positions_deg.empty() ? "" : " at any of the positions", best.best,
+        configuration_text(configuration));
+  } else if (configuration.positions_deg.empty()) {
+    text = fmt::format("{} is detected with {:.2g}, by {}.", wanted.target, best.best,
+                       configuration_text(configuration));
   } else {
     text = fmt::format(
         "{} is detected with {:g} or more best by {}: {}{}.", wanted.target, wanted.probability,
-        way_text(way), arcs_text(way, best.arcs),
+        configuration_text(configuration), arcs_text(configuration, best.arcs),
         study.timeline ? fmt::format(" ({:.0f} % of the orbit)", 100.0 * best.reach) : "");
   }
-  answer.text = text + lamp_text(ways, way, wanted.probability);
+  answer.text = text + lamp_text(configurations, configuration, wanted.probability);
   return answer;
 }
 

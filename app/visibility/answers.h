@@ -25,30 +25,31 @@ struct ViewingConfiguration {
 };
 
 template <class Fields>
-void describe(Fields& fields, Either<ViewingConfiguration> auto& way) {
-  fields("scene", way.scene);
-  fields("camera", way.camera);
-  fields("iris", way.iris);
-  fields("lamps", way.lamps);
-  fields("detect", way.detect);
-  fields("positions_deg", way.positions_deg);
-  fields("tai_s", way.tai_s);
-  fields("least_factor", way.least_factor);
-  fields("darkest_deg", way.darkest_deg);
-  fields("tried_factors", way.tried_factors);
+void describe(Fields& fields, Either<ViewingConfiguration> auto& configuration) {
+  fields("scene", configuration.scene);
+  fields("camera", configuration.camera);
+  fields("iris", configuration.iris);
+  fields("lamps", configuration.lamps);
+  fields("detect", configuration.detect);
+  fields("positions_deg", configuration.positions_deg);
+  fields("tai_s", configuration.tai_s);
+  fields("least_factor", configuration.least_factor);
+  fields("darkest_deg", configuration.darkest_deg);
+  fields("tried_factors", configuration.tried_factors);
 }
 
 // Adds one camera's viewing configurations to the list of each wanted target.
 void add_configurations(const StudyPart& part, const studies::StudyFile& study,
                         const StudyCamera& camera, const studies::BasisView& view,
-                        std::vector<std::vector<ViewingConfiguration>>& ways);
+                        std::vector<std::vector<ViewingConfiguration>>& configurations);
 
 // Adds one pose's configuration to that of the poses before it, or as a new one.
-void add_configuration(std::vector<ViewingConfiguration>& ways, const ViewingConfiguration& way);
+void add_configuration(std::vector<ViewingConfiguration>& configurations,
+                       const ViewingConfiguration& configuration);
 
 // What a wanted target is answered.
 [[nodiscard]] AnswerEntry answer_of(const studies::WantedTarget& wanted,
                                     const studies::StudyFile& study,
-                                    const std::vector<ViewingConfiguration>& ways);
+                                    const std::vector<ViewingConfiguration>& configurations);
 
 }  // namespace earthshine::app

@@ -36,7 +36,7 @@ bool CameraWork::is_done(Share batches) const {
 std::optional<CameraWork::Configurations> CameraWork::known_configurations() const {
   std::string said;
   const auto kept = pictures_.store.find_facts(answers_key_, said);
-  return kept ? std::optional(read_kept<Configurations>((*kept)["ways"])) : std::nullopt;
+  return kept ? std::optional(read_kept<Configurations>((*kept)["configurations"])) : std::nullopt;
 }
 
 std::optional<Judged> CameraWork::known_conditions() const {
@@ -70,7 +70,7 @@ CameraWork::Configurations CameraWork::conclude(const studies::BasisView& view,
   if (auto kept = known_configurations()) return std::move(*kept);
   Configurations found(pictures_.study.wanted.size());
   add_configurations(pictures_.part, pictures_.study, pictures_.camera, view, found);
-  pictures_.store.keep_facts(answers_key_, {{"ways", kept_json(found)}});
+  pictures_.store.keep_facts(answers_key_, {{"configurations", kept_json(found)}});
   return found;
 }
 

@@ -96,7 +96,7 @@ void add_notes_of_scene(const StudyPart& part, const std::string& scene,
   }
 }
 
-constexpr double quarter_turns_deg[] = {0.0, 90.0, 180.0, 270.0};
+constexpr double quarters_deg[] = {0.0, 90.0, 180.0, 270.0};
 
 std::optional<OrbitEntry> orbit_entry(const scenes::Scene& scene) {
   if (!scene.orbit) return std::nullopt;
@@ -119,7 +119,7 @@ std::optional<OrbitEntry> orbit_entry(const scenes::Scene& scene) {
   };
   take(eclipse.umbra, entry.umbra_deg);
   take(eclipse.penumbra, entry.penumbra_deg);
-  for (const double position_deg : quarter_turns_deg) {
+  for (const double position_deg : quarters_deg) {
     try {
       const scenes::OrbitState at = scenes::orbit_state(orbit, position_deg);
       // n = r x v, all in the scene's frame, whose z is the bay's axis.

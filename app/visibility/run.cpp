@@ -71,7 +71,7 @@ class Runner {
 
   [[nodiscard]] StudyResults run() {
     const Interrupt interrupt;
-    ways_.resize(task_.study.wanted.size());
+    configurations_.resize(task_.study.wanted.size());
     for (const StudyPart* part : parts_) expect_work(*part);
     std::optional<StudyFrames::Poses> poses;
     for (std::size_t k = 0; k < parts_.size(); ++k) {
@@ -87,8 +87,8 @@ class Runner {
       }
     }
     // A stopped study has no answers.
-    for (std::size_t k = 0; results_.complete && k < ways_.size(); ++k) {
-      results_.answers.push_back(answer_of(task_.study.wanted[k], task_.study, ways_[k]));
+    for (std::size_t k = 0; results_.complete && k < configurations_.size(); ++k) {
+      results_.answers.push_back(answer_of(task_.study.wanted[k], task_.study, configurations_[k]));
     }
     expose_figures(task_.folder, task_.tone, results_.figures);
     results_.pairs = pairs_of(task_.study, results_.figures);
@@ -136,16 +136,17 @@ class Runner {
 
   void add_all(const std::vector<std::vector<ViewingConfiguration>>& more) {
     for (std::size_t k = 0; k < more.size(); ++k) {
-      for (const ViewingConfiguration& way : more[k]) add_configuration(ways_[k], way);
+      for (const ViewingConfiguration& configuration : more[k])
+        add_configuration(configurations_[k], configuration);
     }
   }
 
   // Uses stored results if an earlier run completed the camera, without reading the picture.
   bool take_finished(const CameraWork& work, CameraFindings& found) {
     if (!pictures_are_there(work.pictures())) return false;
-    const auto ways = work.known_configurations();
+    const auto configurations = work.known_configurations();
     auto judged = work.known_conditions();
-    if (!ways || !judged || !thumbnails_are_there(work, *judged)) return false;
+    if (!configurations || !judged || !thumbnails_are_there(work, *judged)) return false;
     const auto frame = work.known_frame(results_.costs);
     if (!frame) return false;
     common_.progress->drop(Work::StudyPicture);
@@ -154,7 +155,7 @@ class Runner {
     found.conditions = std::move(*judged);
     results_.costs.push_back(
         {fmt::format("conditions {} {}", found.part.id, found.camera.camera->name), 0.0, 0, true});
-    add_all(*ways);
+    add_all(*configurations);
     draw_pictures(work.pictures(), nullptr, results_.figures);
     found.thumbnails = draw_thumbnails(work, nullptr, found.conditions);
     return true;
@@ -175,7 +176,7 @@ class Runner {
   const std::vector<const StudyPart*> parts_;
   std::vector<std::vector<std::string>> limits_;  // of each part's solution
   StudyResults results_;
-  std::vector<std::vector<ViewingConfiguration>> ways_;
+  std::vector<std::vector<ViewingConfiguration>> configurations_;
 };
 
 void note_unused(const StudyTask& task) {

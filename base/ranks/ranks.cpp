@@ -37,7 +37,7 @@ void exchange(Ranks& all, std::vector<std::size_t>& mine, const Transfer& transf
     got.pass(theirs);
     for (const std::size_t k : theirs) transfer(k, got);
   };
-  if (receivers == Receivers::All) return broadcast_in_turn(all, say, take);
+  if (receivers == Receivers::All) return sequential_broadcast(all, say, take);
   if (all.number() > 0) all.send(say(), 0);
   for (int rank = 1; all.number() == 0 && rank < all.count(); ++rank) take(rank, all.receive(rank));
   meet(all);
@@ -51,8 +51,8 @@ RanksInForce::RanksInForce(Ranks* ranks) : before_(std::exchange(in_force, ranks
 
 RanksInForce::~RanksInForce() { in_force = before_; }
 
-void broadcast_in_turn(Ranks& ranks, const std::function<std::string()>& say,
-                       const std::function<void(int, std::string)>& take) {
+void sequential_broadcast(Ranks& ranks, const std::function<std::string()>& say,
+                          const std::function<void(int, std::string)>& take) {
   for (int rank = 0; rank < ranks.count(); ++rank) {
     std::string bytes;
     if (rank == ranks.number()) bytes = say();
@@ -83,7 +83,7 @@ std::vector<std::string> swap(Ranks& ranks, std::vector<std::string> to) {
 }
 
 void meet(Ranks& ranks) {
-  broadcast_in_turn(
+  sequential_broadcast(
       ranks, [] { return std::string(); }, [](int, const std::string&) {});
 }
 
@@ -128,7 +128,7 @@ void share_chunks(std::size_t count, std::size_t chunk,
 bool holds_on_all_ranks(bool here) {
   bool everywhere = here;
   if (ranks() != nullptr) {
-    broadcast_in_turn(
+    sequential_broadcast(
         *ranks(), [&] { return std::string(here ? "1" : "0"); },
         [&](int, const std::string& there) { everywhere = everywhere && there == "1"; });
   }

@@ -129,8 +129,8 @@ class Parcel {
 
 // All-gather of byte strings: each rank in turn broadcasts say(), and all ranks, including the
 // sender, call take(). A rank needs memory for one message only.
-void broadcast_in_turn(Ranks& ranks, const std::function<std::string()>& say,
-                       const std::function<void(int rank, std::string bytes)>& take);
+void sequential_broadcast(Ranks& ranks, const std::function<std::string()>& say,
+                          const std::function<void(int rank, std::string bytes)>& take);
 
 // All-to-all: to[r] goes to rank r. Returns the strings from all ranks for this one.
 [[nodiscard]] std::vector<std::string> swap(Ranks& ranks, std::vector<std::string> to);

@@ -59,7 +59,7 @@ void Shares::sequential_reduce(const Pass& say, const Pass& listen) const {
     say(parcel);
     return parcel.take_bytes();
   };
-  broadcast_in_turn(*ranks(), bytes, [&](int, std::string said) {
+  sequential_broadcast(*ranks(), bytes, [&](int, std::string said) {
     Parcel parcel(std::move(said));
     listen(parcel);
   });

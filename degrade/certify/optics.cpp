@@ -118,9 +118,9 @@ CertificateRow bloom(const Bench& bench) {
     double sum = 0.0;
     for (int n = centre - side / 2; n <= centre + side / 2; ++n) {
       // Repeated mirror images in both borders, as far as a tap reaches.
-      const int turns = 1 + static_cast<int>(7.0 * camera.bloom_radius) / size;
-      for (int turn = -turns; turn <= turns; ++turn) {
-        const int there = 2 * turn * size;
+      const int copies = 1 + static_cast<int>(7.0 * camera.bloom_radius) / size;
+      for (int copy = -copies; copy <= copies; ++copy) {
+        const int there = 2 * copy * size;
         sum += gaussian_tap(camera.bloom_radius, there + n - from) +
                gaussian_tap(camera.bloom_radius, there - 1 - n - from);
       }

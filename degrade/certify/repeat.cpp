@@ -72,9 +72,9 @@ Rows independence_rows(const Bench& bench, const base::Image& chart, const Pictu
                row("correlation with another seed", other(bench, chart, 1, 0, 0), 0.0, "none"),
                row("correlation with another view", other(bench, chart, 0, 0, 1), 0.0, "none")};
   if (field.planes.size() == 3) {
-    const Picture turned{
+    const Picture next_colours{
         field.columns, field.rows, {field.planes[1], field.planes[2], field.planes[0]}};
-    rows.push_back(row("correlation of two colours", turned, 0.0, "none"));
+    rows.push_back(row("correlation of two colours", next_colours, 0.0, "none"));
   }
   return rows;
 }

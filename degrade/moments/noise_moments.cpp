@@ -53,7 +53,7 @@ AxisMap product(const AxisMap& w, const AxisMap& v, int lag) {
 // Adds the sum over z and the stored d of a(z) b(z + d) C_d(z), with weight `zero` for d = 0 and
 // `others` for the rest. `turned`: the transposed planes, so that sums over x run along whole
 // lines.
-void add_pairs(Plane& out, const Covariance& noise, const std::vector<Plane>& turned,
+void add_pairs(Plane& out, const Covariance& noise, const std::vector<Plane>& columns_first,
                const PlaneMap& a, const PlaneMap& b, double zero, double others) {
   const std::size_t rows = size(noise.rows), wide = size(a.along.out());
   int most = 0;
@@ -61,11 +61,11 @@ void add_pairs(Plane& out, const Covariance& noise, const std::vector<Plane>& tu
   for (int dy = 0; dy <= most; ++dy) {
     Plane lines(wide * rows);
     bool any = false;
-    for (std::size_t k = 0; k < turned.size(); ++k) {
+    for (std::size_t k = 0; k < columns_first.size(); ++k) {
       const Offset d = noise.offsets[k];
       const double factor = d == Offset{} ? zero : others;
       if (d.dy != dy || factor == 0.0) continue;
-      add_lines(lines, turned[k], rows, product(a.along, b.along, d.dx), factor);
+      add_lines(lines, columns_first[k], rows, product(a.along, b.along, d.dx), factor);
       any = true;
     }
     if (!any) continue;
@@ -74,12 +74,12 @@ void add_pairs(Plane& out, const Covariance& noise, const std::vector<Plane>& tu
   }
 }
 
-std::vector<Plane> turned_planes(const Covariance& noise) {
-  std::vector<Plane> turned;
+std::vector<Plane> transposed_planes(const Covariance& noise) {
+  std::vector<Plane> columns_first;
   for (const Plane& plane : noise.planes) {
-    turned.push_back(transposed(plane, noise.columns, noise.rows));
+    columns_first.push_back(transposed(plane, noise.columns, noise.rows));
   }
-  return turned;
+  return columns_first;
 }
 
 // C_d(z) <- f(C_d(z), z, z + d) for pairs inside the picture.
@@ -189,7 +189,7 @@ Plane variance_after(const Covariance& noise, const AxisMap& along, const AxisMa
   Plane out(size(along.out()) * size(across.out()));
   const PlaneMap map{along, across};
   // d and -d give the same sum.
-  add_pairs(out, noise, turned_planes(noise), map, map, 1.0, 2.0);
+  add_pairs(out, noise, transposed_planes(noise), map, map, 1.0, 2.0);
   return out;
 }
 
@@ -199,10 +199,10 @@ Plane covariance_between(const Covariance& noise, const PlaneMap& a, const Plane
     check_fits(map->across, noise.rows, "rows");
   }
   Plane out(size(a.along.out()) * size(a.across.out()));
-  const std::vector<Plane> turned = turned_planes(noise);
-  add_pairs(out, noise, turned, a, b, 1.0, 1.0);
+  const std::vector<Plane> columns_first = transposed_planes(noise);
+  add_pairs(out, noise, columns_first, a, b, 1.0, 1.0);
   // The offsets -d: a and b are swapped.
-  add_pairs(out, noise, turned, b, a, 0.0, 1.0);
+  add_pairs(out, noise, columns_first, b, a, 0.0, 1.0);
   return out;
 }
 

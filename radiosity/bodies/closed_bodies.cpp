@@ -51,11 +51,11 @@ ClosedSurface::ClosedSurface(std::span<const Vec3> corners)
   for (std::size_t k = 0; k < count; ++k) {
     const Vec3 &a = corners[3 * k], &b = corners[3 * k + 1], &c = corners[3 * k + 2];
     volume_m3_ += glm::dot(a - middle, glm::cross(b - middle, c - middle)) / 6.0;
-    triangles_.push_back({turned(a), turned(b), turned(c)});
+    triangles_.push_back({permuted(a), permuted(b), permuted(c)});
   }
   cells_ = static_cast<std::size_t>(std::clamp(std::sqrt(double(count)), 1.0, most_cells));
-  corner_ = turned(low_);
-  cell_size_ = glm::max(turned(size) / double(cells_), Vec3(std::numeric_limits<double>::min()));
+  corner_ = permuted(low_);
+  cell_size_ = glm::max(permuted(size) / double(cells_), Vec3(std::numeric_limits<double>::min()));
   // By descending extent, and each cell's triangles in this order.
   std::vector<std::pair<double, std::uint32_t>> order;
   for (std::uint32_t k = 0; k < count; ++k) {
@@ -85,20 +85,20 @@ bool ClosedSurface::is_of(std::span<const Vec3> corners) const {
   bool same = corners.size() == 3 * triangles_.size();
   for (std::size_t k = 0; same && k < triangles_.size(); ++k) {
     const Corners& t = triangles_[k];
-    same = t.a == turned(corners[3 * k]) && t.b == turned(corners[3 * k + 1]) &&
-           t.c == turned(corners[3 * k + 2]);
+    same = t.a == permuted(corners[3 * k]) && t.b == permuted(corners[3 * k + 1]) &&
+           t.c == permuted(corners[3 * k + 2]);
   }
   return same;
 }
 
-std::size_t ClosedSurface::cell(double x, int way) const {
-  const double index = (x - corner_[way]) / cell_size_[way];
+std::size_t ClosedSurface::cell(double x, int axis) const {
+  const double index = (x - corner_[axis]) / cell_size_[axis];
   return static_cast<std::size_t>(std::clamp(index, 0.0, double(cells_ - 1)));
 }
 
 int ClosedSurface::winding(const Vec3& point) const {
   if (!may_wind(point, point)) return 0;
-  const Vec3 p = turned(point);
+  const Vec3 p = permuted(point);
   const std::size_t at = cell(p.x, 0) * cells_ + cell(p.y, 1);
   int winding = 0;
   for (std::uint32_t k = first_[at]; k < first_[at + 1]; ++k) {

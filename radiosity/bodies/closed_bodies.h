@@ -61,19 +61,19 @@ class ClosedSurface {
     Vec3 a, b, c;
   };
   // Makes the projection axis the last one by a cyclic permutation, which preserves orientation.
-  [[nodiscard]] Vec3 turned(const Vec3& p) const {
+  [[nodiscard]] Vec3 permuted(const Vec3& p) const {
     return axis_ == 2 ? p : axis_ == 1 ? Vec3(p.z, p.x, p.y) : Vec3(p.y, p.z, p.x);
   }
-  [[nodiscard]] std::size_t cell(double x, int way) const;
+  [[nodiscard]] std::size_t cell(double x, int axis) const;
 
   Vec3 low_{0.0}, high_{0.0};
   double volume_m3_ = 0.0;
   int axis_ = 2;
-  std::vector<Corners> triangles_;  // rotated by turned()
+  std::vector<Corners> triangles_;  // rotated by permuted()
   // A grid over the projection: for each cell the triangles that may wind around its points,
   // ordered by their farthest extent.
   std::size_t cells_ = 1;              // per axis
-  Vec3 corner_{0.0}, cell_size_{1.0};  // rotated by turned()
+  Vec3 corner_{0.0}, cell_size_{1.0};  // rotated by permuted()
   std::vector<std::uint32_t> first_, of_cell_;
 };
 

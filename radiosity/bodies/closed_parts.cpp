@@ -18,7 +18,7 @@ constexpr std::uint32_t no_triangle = 0xFFFFFFFFU;
 
 struct EdgeUse {
   std::uint32_t low, high, object, triangle;
-  int way;
+  int sign;  // 1 from low to high, else -1
   [[nodiscard]] std::uint64_t edge() const { return (std::uint64_t{low} << 32U) | high; }
   [[nodiscard]] std::uint64_t face() const { return (std::uint64_t{object} << 32U) | triangle; }
 };
@@ -93,9 +93,9 @@ class Stopper {
     return std::any_of(grounds.begin(), grounds.end(), [&](std::uint32_t t) {
       const auto [a, b, c] = corners_of(scene_, t);
       const auto inside_of = [&](const Vec3& from, const Vec3& to) {
-        const Vec3 way = to - from;
-        const double aside = glm::dot(glm::cross(way, p - from), normals_[t]);
-        return aside >= -touch_m_ * glm::length(way);
+        const Vec3 offset = to - from;
+        const double aside = glm::dot(glm::cross(offset, p - from), normals_[t]);
+        return aside >= -touch_m_ * glm::length(offset);
       };
       return inside_of(a, b) && inside_of(b, c) && inside_of(c, a);
     });
@@ -172,7 +172,7 @@ ClosedParts find_closed_parts(const scenes::Scene& scene, const std::vector<char
       for (; end < uses.size() && uses[end].edge() == uses[begin].edge() &&
              uses[end].object == uses[first].object;
            ++end) {
-        own += uses[end].way;
+        own += uses[end].sign;
         unite(uses[first].triangle, uses[end].triangle);
       }
       if (own == 0) continue;
@@ -180,7 +180,7 @@ ClosedParts find_closed_parts(const scenes::Scene& scene, const std::vector<char
       if (loose != no_triangle) unite(loose, uses[first].triangle);
       loose = uses[first].triangle;
     }
-    const auto& [low, high, object, triangle, way] = uses[begin];
+    const auto& [low, high, object, triangle, sign] = uses[begin];
     for (int k = 0; k < std::abs(net); ++k) {
       parts.rims.push_back({loose, net > 0 ? low : high, net > 0 ? high : low});
     }

@@ -94,8 +94,8 @@ class WallFinder {
     if (glm::dot(front, corners.normal()) < 0.0) front = -front;
     Trace trace{in_plane(facet, (*ends)[0]), in_plane(facet, (*ends)[1]), {}, 0.0, front, false};
     if (!clip(facet, scenes::corners_of(scene_, ground), touch_m, trace)) return;
-    trace.way = {glm::dot(front, facet.a), glm::dot(front, facet.b)};
-    trace.reach = glm::dot(trace.way, 0.5 * (trace.from + trace.to));
+    trace.normal = {glm::dot(front, facet.a), glm::dot(front, facet.b)};
+    trace.reach = glm::dot(trace.normal, 0.5 * (trace.from + trace.to));
     by_facet_[number].push_back(trace);
     if (!material.two_sided) of_bodies_.push_back({number, by_facet_[number].size() - 1, wall});
   }
@@ -110,11 +110,11 @@ class WallFinder {
   bool clip(const Facet& facet, const Corners& ground, double touch_m, Trace& trace) const {
     std::array<PlanePoint, 3> p{in_plane(facet, ground.a), in_plane(facet, ground.b),
                                 in_plane(facet, ground.c)};
-    const PlanePoint way = trace.to - trace.from;
+    const PlanePoint along = trace.to - trace.from;
     double low = 0.0, high = 1.0;
     for (std::size_t k = 0; k < 3; ++k) {
       const PlanePoint edge = p[(k + 1) % 3] - p[k];
-      const double at = cross(edge, trace.from - p[k]), change = cross(edge, way);
+      const double at = cross(edge, trace.from - p[k]), change = cross(edge, along);
       // Share of twice the facet's area: rounding tolerance for points on the edge.
       constexpr double rounding = 1e-9;
       if (std::abs(change) < rounding) {
@@ -126,8 +126,8 @@ class WallFinder {
     }
     if (!(low < high)) return false;
     const PlanePoint from = trace.from;
-    trace.from = from + low * way;
-    trace.to = from + high * way;
+    trace.from = from + low * along;
+    trace.to = from + high * along;
     const double length =
         glm::length((trace.to.x - trace.from.x) * facet.a + (trace.to.y - trace.from.y) * facet.b);
     return length > touch_m && !along_edge(facet, touch_m, trace);
@@ -183,12 +183,12 @@ class WallFinder {
     for (Trace& t : traces) {
       Vec3 front = t.front;
       // Only a body covers one side. Other traces get a canonical orientation.
-      const bool turned = !t.of_body && (glm::dot(front, x) < -1e-9 ||
-                                         (glm::dot(front, x) < 1e-9 && glm::dot(front, y) < 0.0));
-      if (turned) {
+      const bool reversed = !t.of_body && (glm::dot(front, x) < -1e-9 ||
+                                           (glm::dot(front, x) < 1e-9 && glm::dot(front, y) < 0.0));
+      if (reversed) {
         front = -front;
         t.front = front;
-        t.way = -t.way;
+        t.normal = -t.normal;
         t.reach = -t.reach;
       }
       const Vec3 along = glm::cross(facet.normal, front);

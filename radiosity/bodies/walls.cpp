@@ -35,10 +35,10 @@ double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3&
     return along * along / square;
   }
   const auto from_edge = [&p](const Vec3& from, const Vec3& to) {
-    const Vec3 edge = to - from, way = p - from;
+    const Vec3 edge = to - from, offset = p - from;
     const double length2 = glm::dot(edge, edge);
-    const double t = length2 > 0.0 ? std::clamp(glm::dot(way, edge) / length2, 0.0, 1.0) : 0.0;
-    const Vec3 left = way - t * edge;
+    const double t = length2 > 0.0 ? std::clamp(glm::dot(offset, edge) / length2, 0.0, 1.0) : 0.0;
+    const Vec3 left = offset - t * edge;
     return glm::dot(left, left);
   };
   return std::min({from_edge(a, b), from_edge(b, c), from_edge(c, a)});

@@ -122,7 +122,7 @@ class SourceRays {
     if (thrown) {
       part.black += base::luminance(reflected);
     } else {
-      follow(at + lift, query_.specular_paths().mirrors()[mirror].turned(direction), reflected,
+      follow(at + lift, query_.specular_paths().mirrors()[mirror].reflected(direction), reflected,
              panes + 1, true, part);
     }
   }

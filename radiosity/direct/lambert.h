@@ -80,8 +80,8 @@ class LambertSum {
         const double sine = std::sqrt(cx * cx + cy * cy + cz * cz);
         const double cosine = ax_[k] * bx_[k] + ay_[k] * by_[k] + az_[k] * bz_[k];
         const double angle = angle_of(sine, cosine);
-        const double turned = cx * normal_.x + cy * normal_.y + cz * normal_.z;
-        part[lane] = sine > 0.0 ? angle * turned / sine : 0.0;
+        const double projected = cx * normal_.x + cy * normal_.y + cz * normal_.z;
+        part[lane] = sine > 0.0 ? angle * projected / sine : 0.0;
       }
       sum_ += (part[0] + part[1]) + (part[2] + part[3]);
     }

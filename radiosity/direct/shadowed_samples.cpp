@@ -93,7 +93,7 @@ bool sees_nothing_of(const Source& source, std::span<const scenes::FlatMirror> m
   const Vec3 normal = patches.normal(patch);
   return source.is_below_horizon(normal) &&
          std::all_of(mirrors.begin(), mirrors.end(), [&](const scenes::FlatMirror& mirror) {
-           return source.is_below_horizon(mirror.turned(normal));
+           return source.is_below_horizon(mirror.reflected(normal));
          });
 }
 
@@ -156,14 +156,14 @@ void take_samples(const Source& source, std::span<const scenes::FlatMirror> mirr
   for (std::uint32_t m = 0; m < mirrors.size(); ++m) {
     const scenes::FlatMirror& mirror = mirrors[m];
     if (mirror.height_m(point) <= 0.0) continue;
-    const Vec3 turned = mirror.turned(normal);
-    if (source.is_below_horizon(turned)) continue;
+    const Vec3 reflected = mirror.reflected(normal);
+    if (source.is_below_horizon(reflected)) continue;
     const auto& disc = source.disc;
     if (disc && !scenes::disc_may_be_thrown(disc->direction, disc->angle_rad, mirror, point)) {
       continue;
     }
     std::size_t kept = samples.size();
-    add_samples(source, mirror.image(point), turned, u, v, samples);
+    add_samples(source, mirror.image(point), reflected, u, v, samples);
     for (std::size_t k = kept; k < samples.size(); ++k) {
       const LightSample sample = scenes::thrown(samples[k], mirror, m, point);
       if (base::max_component(sample.normal_illuminance_lx) > 0.0) samples[kept++] = sample;

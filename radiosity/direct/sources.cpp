@@ -159,8 +159,8 @@ struct Cluster {
   [[nodiscard]] double distance_m(const Vec3& point) const {
     double nearest2 = std::numeric_limits<double>::infinity();
     for (const std::size_t k : lamps) {
-      const Vec3 way = scene.lamps[k].position - point;
-      nearest2 = std::min(nearest2, glm::dot(way, way));
+      const Vec3 offset = scene.lamps[k].position - point;
+      nearest2 = std::min(nearest2, glm::dot(offset, offset));
     }
     return std::sqrt(nearest2);
   }

@@ -155,7 +155,7 @@ bool keeps_its_own(const FormFactors& f, std::span<const double> area_m2, std::s
          f.sky[patch] + f.black[patch] <= 0.0;
 }
 
-std::size_t fill_both_ways(FormFactors& f, std::span<const double> area_m2) {
+std::size_t fill_reciprocal(FormFactors& f, std::span<const double> area_m2) {
   // All entries pass between ranks; rounds reduce the peak memory.
   constexpr std::uint32_t rounds = 16;
   const auto own = f.shares.own(f.count());

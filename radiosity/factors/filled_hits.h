@@ -29,9 +29,9 @@ std::size_t borrow_starved_columns(FormFactors& factors, std::span<const double>
 // `factors`: as cast, without scales. Returns the number of new entries.
 // `factors` as cast, with no scales yet. Returns how many entries are new.
 inline constexpr double reciprocal_share = 0.01, own_share = 0.001;
-std::size_t fill_both_ways(FormFactors& factors, std::span<const double> area_m2);
+std::size_t fill_reciprocal(FormFactors& factors, std::span<const double> area_m2);
 
-// Whether fill_both_ways gives the patch a self-form-factor.
+// Whether fill_reciprocal gives the patch a self-form-factor.
 [[nodiscard]] bool keeps_its_own(const FormFactors& factors, std::span<const double> area_m2,
                                  std::size_t patch);
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/turn.h"
+#include "base/azimuth.h"
 #include "radiosity/patches/cluster_members.h"
 #include "radiosity/patches/patch_offset.h"
 
@@ -79,10 +79,10 @@ void PatchRays::make_of_several(std::uint32_t patch, const base::SobolSet4::Poin
   const auto off_edges = [](float x) { return inset + (1.0 - 2.0 * inset) * double(x); };
   for (std::uint32_t k = 0; k < width; ++k) {
     const SurfacePoint at = patches_.at(patch, off_edges(p.x[2][k]), off_edges(p.x[3][k]));
-    const base::Turned way = base::turn(p.x[1][k]);
+    const base::Azimuth azimuth = base::azimuth_of(p.x[1][k]);
     const float radius = std::sqrt(p.x[0][k]), height = std::sqrt(1.0F - p.x[0][k]);
-    const Vec3 direction =
-        base::frame_around(at.normal).to_world({radius * way.cosine, radius * way.sine, height});
+    const Vec3 direction = base::frame_around(at.normal).to_world(
+        {radius * azimuth.cosine, radius * azimuth.sine, height});
     query_.set(rays, k, lifted(at, query_), direction);
   }
 }
@@ -107,8 +107,8 @@ void PatchRays::make(const Sender& from, std::uint32_t first, scenes::RayPacket&
   }
   for (std::uint32_t k = 0; k < width; ++k) {
     const float radius = std::sqrt(p.x[0][k]), height = std::sqrt(1.0F - p.x[0][k]);
-    const base::Turned way = base::turn(p.x[1][k]);
-    const float x = radius * way.cosine, y = radius * way.sine;
+    const base::Azimuth azimuth = base::azimuth_of(p.x[1][k]);
+    const float x = radius * azimuth.cosine, y = radius * azimuth.sine;
     rays.direction_x[k] = x * from.tangent.x + y * from.bitangent.x + height * from.normal.x;
     rays.direction_y[k] = x * from.tangent.y + y * from.bitangent.y + height * from.normal.y;
     rays.direction_z[k] = x * from.tangent.z + y * from.bitangent.z + height * from.normal.z;

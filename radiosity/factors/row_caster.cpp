@@ -231,10 +231,10 @@ void RowCaster::escape(const Vec3& direction, double weight, Row& row, Band& ban
 void RowCaster::follow(const RayPacket& packet, std::size_t lane, const scenes::Hit& first,
                        Row& row, HitCounter& counter, Band& band) const {
   float weight = 1.0F;
-  const auto visit = [&](const scenes::Hit& hit, const Vec3& way, int step) {
+  const auto visit = [&](const scenes::Hit& hit, const Vec3& direction, int step) {
     if (step > 0) ++row.rays;
     if (hit.missed()) {
-      escape(way, double(weight), row, band);
+      escape(direction, double(weight), row, band);
       return false;
     }
     const std::uint32_t to = patches_.find(hit.triangle, hit.u, hit.v, hit.front);

@@ -44,7 +44,7 @@ void Scaling::start() {
 std::size_t Scaling::fill() {
   std::copy(raw_.begin(), raw_.end(),
             f_.row_scale.begin() + static_cast<std::ptrdiff_t>(own_.begin));
-  const std::size_t filled = fill_both_ways(f_, area_m2_);
+  const std::size_t filled = fill_reciprocal(f_, area_m2_);
   start();
   return filled;
 }
@@ -191,7 +191,7 @@ std::vector<double> Scaling::response(const std::vector<double>& step) const {
 int Scaling::solve_for_step(std::vector<double>& step, int most_passes) const {
   constexpr double left = 0.1;
   const std::size_t count = sums_.size();
-  std::vector<double> unit(count), missing(count), way(count);
+  std::vector<double> unit(count), missing(count), direction(count);
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t j = own_.begin + k;
     const double diagonal = f_.kept[j] * sums_[k];
@@ -204,8 +204,8 @@ int Scaling::solve_for_step(std::vector<double>& step, int most_passes) const {
   const double enough = left * left * square;
   int passes = 0;
   for (; passes < most_passes && square > enough; ++passes) {
-    for (std::size_t k = 0; k < count; ++k) way[k] = unit[k] * along[k];
-    std::vector<double> change = response(way);
+    for (std::size_t k = 0; k < count; ++k) direction[k] = unit[k] * along[k];
+    std::vector<double> change = response(direction);
     for (std::size_t k = 0; k < count; ++k) change[k] *= unit[k];
     const double curvature = sum_of([&](std::size_t k) { return along[k] * change[k]; });
     if (!(curvature > 0.0)) {  // no scaling exists: more iterations are useless

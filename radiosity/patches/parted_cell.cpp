@@ -42,9 +42,9 @@ Polygon with_corners(const Polygon& polygon, double least_area) {
 }
 
 struct Line {
-  PlanePoint way;
+  PlanePoint normal;
   double reach;
-  [[nodiscard]] double beyond(const PlanePoint& p) const { return glm::dot(way, p) - reach; }
+  [[nodiscard]] double beyond(const PlanePoint& p) const { return glm::dot(normal, p) - reach; }
 };
 
 // Parts beyond the line and before it.
@@ -89,12 +89,12 @@ class Parting {
       // Patches have at most four corners.
       const std::size_t half = polygon.size() / 2;
       const PlanePoint along = polygon[half] - polygon[0];
-      const PlanePoint way{-along.y, along.x};
+      const PlanePoint normal{-along.y, along.x};
       std::array<Polygon, 2> sides;
       sides[0].assign(polygon.begin(), polygon.begin() + static_cast<std::ptrdiff_t>(half) + 1);
       sides[1].assign(polygon.begin() + static_cast<std::ptrdiff_t>(half), polygon.end());
       sides[1].push_back(polygon[0]);
-      return node({way, glm::dot(way, polygon[0])}, sides, most_cuts_deep);
+      return node({normal, glm::dot(normal, polygon[0])}, sides, most_cuts_deep);
     }
     if (polygon.size() == 3) polygon.push_back(polygon.back());
     cell_.outlines.push_back({polygon[0], polygon[1], polygon[2], polygon[3]});
@@ -109,7 +109,7 @@ class Parting {
  private:
   std::int32_t node(const Line& line, const std::array<Polygon, 2>& sides, int depth) {
     const std::size_t at = cell_.nodes.size();
-    cell_.nodes.push_back({line.way, line.reach, {}});
+    cell_.nodes.push_back({line.normal, line.reach, {}});
     for (std::size_t k = 0; k < 2; ++k) {
       const std::int32_t side = part(sides[k], depth);
       cell_.nodes[at].side[k] = side;
@@ -124,7 +124,7 @@ class Parting {
     for (const Trace& trace : traces_) {
       const double share = share_of(polygon, trace);
       if (share <= most || (trace.of_body && !ends_behind(polygon, trace))) continue;
-      const Line own{trace.way, trace.reach};
+      const Line own{trace.normal, trace.reach};
       const std::array<Polygon, 2> sides = halves(polygon, own);
       if (std::min(area_of(sides[0]), area_of(sides[1])) < least_share * area_) continue;
       line = own;
@@ -144,7 +144,7 @@ class Parting {
   [[nodiscard]] bool ends_behind(const Polygon& polygon, const Trace& wall) const {
     return std::any_of(traces_.begin(), traces_.end(), [&](const Trace& other) {
       return other.of_body && glm::dot(other.front, wall.front) < opposite &&
-             glm::dot(wall.way, 0.5 * (other.from + other.to)) <= wall.reach &&
+             glm::dot(wall.normal, 0.5 * (other.from + other.to)) <= wall.reach &&
              share_of(polygon, other) > 0.0;
     });
   }
@@ -178,14 +178,15 @@ void append(Patches& patches, const PartedCell& parted) {
 }
 
 std::uint32_t find_before(const Patches& patches, const TrianglePlace& hit, bool front,
-                          const Vec3& way, double back_m) {
+                          const Vec3& direction, double back_m) {
   const Facet& f = patches.facets[patches.of_triangle[hit.triangle]];
   const Parameters at = patches.parameters(hit.triangle, hit.u, hit.v);
   const Vec3 n = glm::cross(f.a, f.b);
   const double scale = back_m / glm::dot(n, n);
   PlanePoint p =
       f.parallelogram ? PlanePoint(at.s, at.t) : PlanePoint(at.s * (1.0 - at.t), at.s * at.t);
-  p -= scale * PlanePoint(glm::dot(glm::cross(way, f.b), n), glm::dot(glm::cross(f.a, way), n));
+  p -= scale *
+       PlanePoint(glm::dot(glm::cross(direction, f.b), n), glm::dot(glm::cross(f.a, direction), n));
   p = glm::max(p, PlanePoint(0.0));
   const double sum = p.x + p.y;
   const Parameters before =

@@ -15,7 +15,7 @@ namespace earthshine::radiosity {
 struct Trace {
   PlanePoint from, to;
   // Points with way . p >= reach are in front of the wall, if it is one-sided.
-  PlanePoint way;
+  PlanePoint normal;
   double reach;
   Vec3 front;  // unit, in the facet's plane: direction of the wall's front
   // Of a closed body: its inside is covered, unless the body ends there, and needs no patch.
@@ -56,7 +56,7 @@ void append(Patches& patches, const PartedCell& parted);
 // Patch of a ray's hit, as Patches::find, after moving the hit back by back_m along `way`: at the
 // foot of a wall rounding may have put the hit behind the wall.
 [[nodiscard]] std::uint32_t find_before(const Patches& patches, const TrianglePlace& hit,
-                                        bool front, const Vec3& way, double back_m);
+                                        bool front, const Vec3& direction, double back_m);
 
 // The cell of the facet as a polygon in its plane.
 [[nodiscard]] Outline outline_of(const Facet& facet, const Cell& cell);

@@ -197,7 +197,7 @@ Patches::Place Patches::place(const Facet& of, Parameters where) const {
 std::uint32_t Patches::part_at(std::uint32_t first_node, const PlanePoint& p) const {
   for (std::uint32_t node = first_node;;) {
     const PartNode& at = part_nodes[node];
-    const std::int32_t side = at.side[glm::dot(at.way, p) >= at.reach ? 1 : 0];
+    const std::int32_t side = at.side[glm::dot(at.normal, p) >= at.reach ? 1 : 0];
     if (side < 0) return static_cast<std::uint32_t>(~side);
     node = first_node + static_cast<std::uint32_t>(side);
   }
@@ -208,22 +208,22 @@ Rectangle Patches::rectangle(std::uint32_t patch) const {
 }
 
 std::array<Vec3, 4> Patches::corners(std::uint32_t patch) const {
-  const auto turned = [&](const std::array<Vec3, 4>& p) {
+  const auto on_its_side = [&](const std::array<Vec3, 4>& p) {
     return is_back[patch] != 0 ? std::array<Vec3, 4>{p[0], p[3], p[2], p[1]} : p;
   };
   const auto of = [&](const Facet& f, const Rectangle& r) {
-    return turned({on_facet(f, r.s0, r.t0), on_facet(f, r.s1, r.t0), on_facet(f, r.s1, r.t1),
-                   on_facet(f, r.s0, r.t1)});
+    return on_its_side({on_facet(f, r.s0, r.t0), on_facet(f, r.s1, r.t0), on_facet(f, r.s1, r.t1),
+                        on_facet(f, r.s0, r.t1)});
   };
   const Facet& f = facets[facet[patch]];
   if (is_part(patch)) {
     const Outline& o = outlines[cell[patch].outline];
     const auto at = [&](const PlanePoint& p) { return f.corner + p.x * f.a + p.y * f.b; };
-    return turned({at(o[0]), at(o[1]), at(o[2]), at(o[3])});
+    return on_its_side({at(o[0]), at(o[1]), at(o[2]), at(o[3])});
   }
   if (!f.is_cluster()) return of(f, rectangle(patch));
   const ClusterSpan span = span_of(f, cell[patch]);
-  if (span.count > 1) return turned(clustered->corners(span));
+  if (span.count > 1) return on_its_side(clustered->corners(span));
   return of(clustered->facet(span.first), span.part);
 }
 

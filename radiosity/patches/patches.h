@@ -76,7 +76,7 @@ inline constexpr std::uint32_t no_outline = 0xFFFFFFFFU;
 // Division of a cell: points with way . p >= reach are on the second side. A side is the index of
 // another node, or ~k for part k of the cell.
 struct PartNode {
-  PlanePoint way;
+  PlanePoint normal;
   double reach;
   std::array<std::int32_t, 2> side;
 };

@@ -54,8 +54,8 @@ std::uint64_t of_map(const scenes::TextureMap& map) {
   if (!map.texture) return digest.value();
   digest.add(map.texture->digest());
   digest.add(std::uint64_t{map.by_second});
-  const auto& [turn, shift] = *map.transform;
-  for (const double x : {turn[0].x, turn[0].y, turn[1].x, turn[1].y, shift.x, shift.y}) {
+  const auto& [matrix, shift] = *map.transform;
+  for (const double x : {matrix[0].x, matrix[0].y, matrix[1].x, matrix[1].y, shift.x, shift.y}) {
     digest.add(x);
   }
   return digest.value();

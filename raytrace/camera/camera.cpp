@@ -83,8 +83,8 @@ CameraModel CameraModel::at_row(double y, double u) const {
 }
 
 Vec3 CameraModel::to_camera(const Vec3& point) const {
-  const Vec3 way = point - position;
-  return {glm::dot(way, right), -glm::dot(way, up), glm::dot(way, forward)};
+  const Vec3 offset = point - position;
+  return {glm::dot(offset, right), -glm::dot(offset, up), glm::dot(offset, forward)};
 }
 
 double CameraModel::pixel_angle(const Vec3& direction) const {
@@ -115,19 +115,19 @@ glm::dvec2 CameraModel::film_from(const Vec3& on_lens, const Vec3& point) const 
 
 // The direction in which the centre of the lens has the same place of the film.
 Vec3 CameraModel::through_lens(const Vec3& on_lens, const Vec3& point) const {
-  const Vec3 way = to_camera(position + (point - on_lens));
-  return lens_radius_m > 0.0 ? way + way.z / focus_m * to_camera(on_lens) : way;
+  const Vec3 offset = to_camera(position + (point - on_lens));
+  return lens_radius_m > 0.0 ? offset + offset.z / focus_m * to_camera(on_lens) : offset;
 }
 
 double CameraModel::film_per_m2(const Vec3& on_lens, const Vec3& point, const Vec3& normal) const {
-  const Vec3 way = point - on_lens;
+  const Vec3 offset = point - on_lens;
   const double px2 = 0.25 * columns * rows / (projection.half_width * projection.half_height);
-  const double depth = glm::dot(way, forward), across = std::abs(glm::dot(way, normal));
+  const double depth = glm::dot(offset, forward), across = std::abs(glm::dot(offset, normal));
   if (lens_radius_m > 0.0) {
     return px2 * projection.magnification(through_lens(on_lens, point)) * across /
            (depth * depth * depth);
   }
-  const double distance = glm::length(way);
+  const double distance = glm::length(offset);
   return px2 * projection.film_per_sr(to_camera(point)) * across / (distance * distance * distance);
 }
 

@@ -229,9 +229,9 @@ void GatherField::find_first_origins() {
     const auto [x, y] = place_of(pixel_of(p));
     for (int ring = 0; ring <= 1; ++ring) {
       each_neighbour(window_, x, y, ring, [&](std::size_t q) {
-        const bool turns = points_[q].reach_m > 0.0F && points_[q].material == point.material &&
-                           glm::dot(points_[q].normal, point.normal) < tuning::turning_cosine;
-        if (turns) over_pixel_[p] = 1;
+        const bool curved = points_[q].reach_m > 0.0F && points_[q].material == point.material &&
+                            glm::dot(points_[q].normal, point.normal) < tuning::turning_cosine;
+        if (curved) over_pixel_[p] = 1;
       });
     }
   }

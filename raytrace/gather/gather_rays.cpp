@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/turn.h"
+#include "base/azimuth.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -68,8 +68,8 @@ void GatherRays::make(const TilePoints& points, std::size_t first, std::size_t o
     // Lanes past the last point are ignored.
     const std::size_t p = first + offset + k;
     const float radius = std::sqrt(u[k]), z = std::sqrt(1.0F - u[k]);
-    const base::Turned way = base::turn(v[k]);
-    const float x = radius * way.cosine, y = radius * way.sine;
+    const base::Azimuth azimuth = base::azimuth_of(v[k]);
+    const float x = radius * azimuth.cosine, y = radius * azimuth.sine;
     cosine[k] = z;
     rays.origin_x[k] = from.origin_x[p];
     rays.origin_y[k] = from.origin_y[p];

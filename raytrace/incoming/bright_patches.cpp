@@ -56,12 +56,12 @@ void BrightPatches::build(const Span& span, const std::vector<double>& flux) {
   node.radius_m = glm::length(node.half);
   if (span.end - span.begin < 2) return;
   const Vec3& size = node.half;
-  const int way = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+  const int offset = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
   const auto at = patches_.begin();
   std::nth_element(at + span.begin, at + span.middle(), at + span.end,
                    [&](std::uint32_t a, std::uint32_t b) {
-                     const double first = source_->point(a, 0.5, 0.5)[way],
-                                  second = source_->point(b, 0.5, 0.5)[way];
+                     const double first = source_->point(a, 0.5, 0.5)[offset],
+                                  second = source_->point(b, 0.5, 0.5)[offset];
                      return first != second ? first < second : a < b;
                    });
   build(span.first(), flux);
@@ -69,10 +69,10 @@ void BrightPatches::build(const Span& span, const std::vector<double>& flux) {
 }
 
 double BrightPatches::Node::sent_to(const Place& place) const {
-  const Vec3 way = centre - place.position;
-  const double highest = glm::dot(way, place.normal) + glm::dot(half, glm::abs(place.normal));
+  const Vec3 offset = centre - place.position;
+  const double highest = glm::dot(offset, place.normal) + glm::dot(half, glm::abs(place.normal));
   if (highest <= 0.0) return 0.0;
-  const double distance_m = std::max(glm::length(way), radius_m);
+  const double distance_m = std::max(glm::length(offset), radius_m);
   return flux * std::min(highest / distance_m, 1.0) / (distance_m * distance_m);
 }
 

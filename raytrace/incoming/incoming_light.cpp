@@ -91,10 +91,10 @@ IncomingLight::Aimed IncomingLight::aim(const BrightPatches::Place& from, double
   Aimed aimed;
   const std::optional<BrightPatches::Aim> target = bright_.aim(from, choice, x, y);
   if (!target) return aimed;
-  const Vec3 way = target->point - from.position;
-  const double distance = glm::length(way);
+  const Vec3 offset = target->point - from.position;
+  const double distance = glm::length(offset);
   if (distance <= 0.0) return aimed;
-  aimed.direction = way / distance;
+  aimed.direction = offset / distance;
   const double cosine = glm::dot(aimed.direction, from.normal);
   const double at_patch = -glm::dot(aimed.direction, target->normal);
   if (cosine <= 0.0 || at_patch <= 0.0) return aimed;

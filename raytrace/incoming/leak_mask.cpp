@@ -54,11 +54,11 @@ void find_parted(const scenes::RayQuery& query, const radiosity::Patches& patche
     for (std::size_t k = 0; k < count; ++k) {
       const auto [low, high] = pairs[begin + k];
       const Vec3 from = patches.point(first + low, 0.5, 0.5);
-      const Vec3 way = patches.point(first + high, 0.5, 0.5) - from;
-      const double length = glm::length(way);
+      const Vec3 offset = patches.point(first + high, 0.5, 0.5) - from;
+      const double length = glm::length(offset);
       const double lift = std::max(radiosity::patch_offset_m(patches, query, first + low),
                                    lift_per_length * length);
-      query.set(packet, k, from + lift * patches.normal(first + low), way / length, length);
+      query.set(packet, k, from + lift * patches.normal(first + low), offset / length, length);
     }
     const std::uint32_t hidden = query.occluded(packet, count);
     for (std::size_t k = 0; k < count; ++k) {

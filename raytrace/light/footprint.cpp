@@ -21,10 +21,10 @@ Footprint::Footprint(const PixelView& pixel, const Ray& ray, const Vec3& point, 
   glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
   for (const double x : {-reach, reach}) {
     for (const double y : {-reach, reach}) {
-      const Vec3 way = pixel.camera.direction_from(lens_, pixel.x + 0.5 + x, pixel.y + 0.5 + y);
-      const double fall = glm::dot(way, normal);
+      const Vec3 offset = pixel.camera.direction_from(lens_, pixel.x + 0.5 + x, pixel.y + 0.5 + y);
+      const double fall = glm::dot(offset, normal);
       if (fall > -tuning::flattest) return;
-      const Vec3 off = lens_ + height / fall * way - point;
+      const Vec3 off = lens_ + height / fall * offset - point;
       const glm::dvec2 at(glm::dot(off, along), glm::dot(off, across));
       low = glm::min(low, at);
       high = glm::max(high, at);
@@ -37,8 +37,8 @@ Footprint::Footprint(const PixelView& pixel, const Ray& ray, const Vec3& point, 
 }
 
 bool Footprint::is_near(const Vec3& lamp) const {
-  const Vec3 way = lamp - (corner_ + 0.5 * (along_ + across_));
-  return glm::dot(way, normal_) > 0.0 && glm::length(way) < tuning::near_lengths * longest_m_;
+  const Vec3 offset = lamp - (corner_ + 0.5 * (along_ + across_));
+  return glm::dot(offset, normal_) > 0.0 && glm::length(offset) < tuning::near_lengths * longest_m_;
 }
 
 bool Footprint::is_seen(const scenes::RayQuery& query, const Vec3& direction) const {
@@ -49,8 +49,8 @@ bool Footprint::is_seen(const scenes::RayQuery& query, const Vec3& direction) co
 
 Footprint::Places Footprint::toward(const Vec3& lamp, const scenes::RayQuery& query,
                                     const std::array<float, 2>& u, base::Rng& rng) const {
-  const Vec3 way = lamp - point_;
-  const double height = glm::dot(way, normal_), distance = glm::length(way);
+  const Vec3 to_lamp = lamp - point_;
+  const double height = glm::dot(to_lamp, normal_), distance = glm::length(to_lamp);
   const scenes::SolidAngleSample seen =
       scenes::sample_rectangle(lamp, corner_, along_, across_, double(u[0]), double(u[1]));
   const double fall = -glm::dot(seen.direction, normal_);

@@ -30,7 +30,7 @@ void LightSampler::find_delta_lights() {
     DeltaLight& ray = delta_lights_[k];
     ray.is_delta = true;
     ray.position = mirror != nullptr ? mirror->image(lamp.position) : lamp.position;
-    ray.axis = mirror != nullptr ? mirror->turned(lamp.axis) : lamp.axis;
+    ray.axis = mirror != nullptr ? mirror->reflected(lamp.axis) : lamp.axis;
     if (lamp.kind == scenes::LampKind::Spot) ray.field_cosine = scenes::field_cosine(lamp);
     if (mirror != nullptr) ray.lamp_height_m = mirror->height_m(lamp.position);
   }
@@ -57,10 +57,10 @@ bool LightSampler::reaches_mirror(std::size_t index) const {
   if (!ray.is_delta) return true;
   if (ray.lamp_height_m <= 0.0) return false;
   if (ray.field_cosine < -1.0) return true;
-  const Vec3 way = mirror.centre - ray.position;  // from the image, whose axis is mirrored, too
-  const double distance = glm::length(way);
+  const Vec3 offset = mirror.centre - ray.position;  // from the image, whose axis is mirrored, too
+  const double distance = glm::length(offset);
   if (distance <= mirror.radius_m) return true;
-  const double off = std::acos(std::clamp(glm::dot(way, ray.axis) / distance, -1.0, 1.0));
+  const double off = std::acos(std::clamp(glm::dot(offset, ray.axis) / distance, -1.0, 1.0));
   return off <= std::acos(ray.field_cosine) + std::asin(mirror.radius_m / distance) + 1e-6;
 }
 

@@ -146,8 +146,8 @@ void LightSampler::choose(const scenes::Receiver& receiver, double u,
     if (mirror.height_m(receiver.point) <= 0.0) continue;
     scenes::Receiver image = receiver;
     image.point = mirror.image(receiver.point);
-    image.normal = mirror.turned(receiver.normal);
-    image.mirrored = mirror.turned(receiver.mirrored);
+    image.normal = mirror.reflected(receiver.normal);
+    image.mirrored = mirror.reflected(receiver.mirrored);
     choose_thrown(mirror_lights_[m + 1], image, u, (m + 1) * sources_, chosen);
   }
 }
@@ -187,7 +187,7 @@ namespace {
 bool sun_may_reach(const Vec3& direction, double angle_rad, const scenes::FlatMirror* mirror,
                    const Vec3& point, const Vec3& normal) {
   if (mirror == nullptr) return glm::dot(direction, normal) >= -angle_rad;
-  return glm::dot(direction, mirror->turned(normal)) >= -angle_rad &&
+  return glm::dot(direction, mirror->reflected(normal)) >= -angle_rad &&
          scenes::disc_may_be_thrown(direction, angle_rad, *mirror, point);
 }
 
@@ -205,19 +205,20 @@ bool LightSampler::may_reach(std::size_t index, const Vec3& point, const Vec3& n
     return sun_may_reach(scene_.sun->direction, angle_rad, mirror, point, normal);
   }
   const DeltaLight& ray = delta_lights_[index];
-  const Vec3 way = ray.position - point;
+  const Vec3 offset = ray.position - point;
   if (ray.is_delta) {
     // Squares avoid roots: a picture calls this tens of millions of times, mostly for images.
-    const double distance2 = glm::dot(way, way);
-    if (signed_square(glm::dot(way, normal)) < signed_square(-rounding) * distance2) return false;
+    const double distance2 = glm::dot(offset, offset);
+    if (signed_square(glm::dot(offset, normal)) < signed_square(-rounding) * distance2)
+      return false;
     const double least = signed_square(ray.field_cosine - rounding);
-    if (signed_square(-glm::dot(way, ray.axis)) < least * distance2) return false;
+    if (signed_square(-glm::dot(offset, ray.axis)) < least * distance2) return false;
   }
   const double height = mirror != nullptr ? mirror->height_m(point) : 0.0;
   if (mirror != nullptr && height <= 0.0) return false;
   if (!ray.is_delta || mirror == nullptr) return true;
   if (ray.lamp_height_m <= 0.0) return false;
-  const Vec3 off = point + height / (height + ray.lamp_height_m) * way - mirror->centre;
+  const Vec3 off = point + height / (height + ray.lamp_height_m) * offset - mirror->centre;
   return glm::dot(off, off) <= mirror->radius_m * mirror->radius_m * (1.0 + 2e-6);
 }
 

@@ -13,7 +13,7 @@ std::span<const Rgb> PathWalker::residual(const IncomingLight& solution, const R
                                           base::Rng& rng) {
   begin(ray, rng);
   sees_sampled_ = from_camera_ = false;
-  turn();
+  leave_specular();
   share_ = share;
   kept_ = solution.residual_weight(first, ray.direction, share);
   follow(solution, first);
@@ -25,8 +25,8 @@ std::span<const Rgb> PathWalker::residual_at(const IncomingLight& solution, cons
                                              base::Rng& rng) {
   begin({}, rng);
   sees_sampled_ = from_camera_ = false;
-  turn();
-  if (!turn_diffusely(solution, origin, normal, u, v)) return finished();
+  leave_specular();
+  if (!scatter_diffusely(solution, origin, normal, u, v)) return finished();
   const scenes::Hit hit = world_.query.closest(ray_.origin, ray_.direction);
   if (hit.missed()) return finished();
   kept_ = solution.residual_weight(hit, ray_.direction, share_);
@@ -38,7 +38,7 @@ std::span<const Rgb> PathWalker::residual_at(const IncomingLight& solution, cons
 // surface. Glass that does not bend light passes on the light of the surfaces behind it, each with
 // its own MIS weight.
 void PathWalker::follow(const IncomingLight& solution, scenes::Hit hit) {
-  for (std::uint32_t turns = 1; !hit.missed(); ++turns) {
+  for (std::uint32_t bounces = 1; !hit.missed(); ++bounces) {
     const Surface surface = surface_at(hit, scenes::hit_position(world_.scene, hit));
     if (kept_ <= 0.0 && !scenes::is_straight_glass(surface.material())) return;
     solution.add(hit, ray_.direction, share_, -weight_, radiance_, rays_);
@@ -53,7 +53,7 @@ void PathWalker::follow(const IncomingLight& solution, scenes::Hit hit) {
     if (goes_straight_on_) continue;
     const double carried = base::max_component(weight_) * (kept_ > 0.0 ? kept_ : 1.0);
     double survival = std::clamp(carried, tuning::least_survival, 1.0);
-    if (turns >= tuning::long_walk && std::has_single_bit(turns))
+    if (bounces >= tuning::long_walk && std::has_single_bit(bounces))
       survival *= tuning::long_walk_survival;
     if (rng_->next() >= survival) return;
     weight_ /= survival;
@@ -62,10 +62,10 @@ void PathWalker::follow(const IncomingLight& solution, scenes::Hit hit) {
 
 // Draws a ray off a diffuse surface, cosine-distributed or aimed at a bright patch; false if its
 // weight is 0.
-bool PathWalker::turn_diffusely(const IncomingLight& solution, const Vec3& origin,
-                                const Vec3& normal, double u, double v) {
+bool PathWalker::scatter_diffusely(const IncomingLight& solution, const Vec3& origin,
+                                   const Vec3& normal, double u, double v) {
   sees_sampled_ = from_camera_ = false;
-  turn();
+  leave_specular();
   ++rays_.gather;
   const bool aims = !solution.bright().empty();
   if (aims && rng_->next() < tuning::aimed_share) {

@@ -39,7 +39,7 @@ std::span<const Rgb> PathWalker::finished() {
 std::span<const Rgb> PathWalker::walk(const Ray& start, base::Rng& rng) {
   begin(start, rng);
   sees_sampled_ = from_camera_ = at_first_ = true;
-  turn();
+  leave_specular();
   ++rays_.camera;
   for (int bounce = 0; step() && survives(bounce); ++bounce) {
   }
@@ -175,29 +175,30 @@ bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
   const double all = share[Diffuse] + share[Lobe] + share[Mirror] + share[Glass];
   if (all <= 0.0) return false;
   double choice = rng_->next() * all;
-  std::size_t way = Diffuse;
-  while (way < Glass && (choice -= share[way]) >= 0.0) ++way;
-  while (share[way] <= 0.0) --way;  // rounding moved the choice past the last nonzero share
-  weight_ *= all / share[way];
-  goes_straight_on_ = way == Glass && straight;
+  std::size_t component = Diffuse;
+  while (component < Glass && (choice -= share[component]) >= 0.0) ++component;
+  while (share[component] <= 0.0)
+    --component;  // rounding moved the choice past the last nonzero share
+  weight_ *= all / share[component];
+  goes_straight_on_ = component == Glass && straight;
   if (!goes_straight_on_) {
     weight_ *= kept_;
     share_ = {};
   }
 
-  if (way == Diffuse && solution != nullptr) {
+  if (component == Diffuse && solution != nullptr) {
     weight_ *= surface.brdf.diffuse;
     const double u = rng_->next(), v = rng_->next();
-    if (!turn_diffusely(*solution, surface.lifted(), surface.brdf.normal, u, v)) return false;
-  } else if (way == Mirror || way == Glass) {
-    pass_on(surface, way == Glass);
+    if (!scatter_diffusely(*solution, surface.lifted(), surface.brdf.normal, u, v)) return false;
+  } else if (component == Mirror || component == Glass) {
+    pass_on(surface, component == Glass);
   } else {
-    scatter(surface, way == Lobe ? Term::Specular : Term::Diffuse);
+    scatter(surface, component == Lobe ? Term::Specular : Term::Diffuse);
   }
   return base::is_lit(weight_);
 }
 
-// Whether shadow rays of the surface where the path last left by turn() carry light along this
+// Whether shadow rays of the surface where the path last left by leave_specular() carry light along this
 // segment: through straight glass and by at most one flat mirror.
 bool PathWalker::shadow_rays_follow(const Surface& surface, bool through) {
   if (through) return scenes::is_straight_glass(surface.material());
@@ -234,7 +235,7 @@ void PathWalker::scatter(const Surface& surface, scenes::Brdf::Term term) {
   weight_ *= (by_lobe ? surface.material().specular : surface.brdf.diffuse) * sample.weight;
   ray_ = {surface.lifted(), sample.direction};
   sees_sampled_ = from_camera_ = false;
-  turn();
+  leave_specular();
   ++(by_lobe ? rays_.lobe : rays_.gather);
 }
 

@@ -91,12 +91,12 @@ class PathWalker {
   bool see_lamp(const scenes::Hit& hit);
   void light_directly(const Surface& surface);
   bool go_on(const Surface& surface, const IncomingLight* solution);
-  bool turn_diffusely(const IncomingLight& solution, const Vec3& origin, const Vec3& normal,
-                      double u, double v);
+  bool scatter_diffusely(const IncomingLight& solution, const Vec3& origin, const Vec3& normal,
+                         double u, double v);
   void follow(const IncomingLight& solution, scenes::Hit hit);
   void pass_on(const Surface& surface, bool through);
   bool shadow_rays_follow(const Surface& surface, bool through);
-  void turn() {  // leaves a surface that shadow rays light
+  void leave_specular() {  // leaves a surface that shadow rays light
     straight_ = true;
     mirrors_ = 0;
   }
@@ -112,9 +112,10 @@ class PathWalker {
   Rgb weight_{1.0};
   bool sees_sampled_ = true;  // no shadow ray of the last surface carried the sources' light
   bool from_camera_ = true;   // by mirrors and glass only
-  bool straight_ = true;      // } since the last turn(): by straight glass and flat mirrors only,
-  int mirrors_ = 0;           // } and the number of flat mirrors
-  bool at_first_ = false;     // on the direct way from the camera to the first surface
+  bool straight_ =
+      true;          // } since the last leave_specular(): by straight glass and flat mirrors only,
+  int mirrors_ = 0;  // } and the number of flat mirrors
+  bool at_first_ = false;  // on the direct way from the camera to the first surface
   bool met_surface_ = false;
   double source_luminance_ = 0.0;
   std::size_t sun_stratum_ = 0;

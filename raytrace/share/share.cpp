@@ -38,7 +38,7 @@ class Sharer {
     for (std::vector<float>& of : keep_) of.assign(points_, 0.0F);
     signs_ = draw_signs(neighbours_, estimate_);
     if (all_) {
-      tell_noise();
+      set_noise();
     } else {
       split();
     }
@@ -101,7 +101,7 @@ class Sharer {
   }
 
   // With Keep::All: the noise of the points themselves.
-  void tell_noise() {
+  void set_noise() {
     expected_.resize(points_);
     for (std::size_t p = 0; p < points_; ++p) {
       expected_[p] = estimate_.samples[p] > 0.0F ? 1.0F / estimate_.samples[p] : 0.0F;

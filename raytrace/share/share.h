@@ -207,9 +207,10 @@ enum class Keep { AsTold, All };
                                        const glm::vec3& to, const glm::vec3& other_normal,
                                        float slack_m) {
   if (glm::dot(normal, other_normal) < tuning::least_surface_cosine) return false;
-  const glm::vec3 way = to - from;
-  const float reach = tuning::most_surface_slope * glm::length(way) + slack_m;
-  return std::abs(glm::dot(way, normal)) <= reach && std::abs(glm::dot(way, other_normal)) <= reach;
+  const glm::vec3 offset = to - from;
+  const float reach = tuning::most_surface_slope * glm::length(offset) + slack_m;
+  return std::abs(glm::dot(offset, normal)) <= reach &&
+         std::abs(glm::dot(offset, other_normal)) <= reach;
 }
 
 }  // namespace earthshine::raytrace

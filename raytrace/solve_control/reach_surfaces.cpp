@@ -66,10 +66,10 @@ class SurfaceSearch {
     } catch (const base::Stopped&) {
       stop(Limit::Stopped);
     }
-    auto [solution, lacks] = light_->finished();
+    auto [solution, missing_share] = light_->finished();
     result_.solution = std::move(solution);
     result_.solution.report.shadow_rays += rounds_->rays();
-    hold_to_ledger(lacks);
+    hold_to_ledger(missing_share);
     return std::move(result_);
   }
 
@@ -94,14 +94,14 @@ class SurfaceSearch {
   }
   // Light that no ray finds, such as a small spot near a lamp that is only visible in mirrors, is
   // missing from all samples alike. The ledger's defect `lacks` then is a lower bound of the error.
-  void hold_to_ledger(double lacks) {
+  void hold_to_ledger(double missing_share) {
     const double stated = result_.surface.parts.total().estimate;
-    if (result_.steps.empty() || lacks <= stated) return;
-    const double more = std::sqrt(base::squared(lacks) - base::squared(stated));
+    if (result_.steps.empty() || missing_share <= stated) return;
+    const double more = std::sqrt(base::squared(missing_share) - base::squared(stated));
     result_.surface.parts.form_factors =
         result_.surface.parts.form_factors + ErrorEstimate{more, more};
-    result_.steps.back().estimate = lacks;
-    if (lacks > wanted_.error && result_.limit == Limit::None) stop(Limit::Ledger);
+    result_.steps.back().estimate = missing_share;
+    if (missing_share > wanted_.error && result_.limit == Limit::None) stop(Limit::Ledger);
   }
 
   // If ranks divide the form factors, the root rank decides, and all ranks sample.
@@ -159,7 +159,7 @@ class SurfaceSearch {
       std::iota(all.begin(), all.end(), 0U);
       const double begun = time_gone();
       const SurfaceSamples samples = rounds_->sample(
-          all, budget, under_way(), may_cast() ? SamplesOf::Light : SamplesOf::Residual);
+          all, budget, stage_text(), may_cast() ? SamplesOf::Light : SamplesOf::Residual);
       last_took_ = time_gone() - begun;
       std::vector<double> variance;
       LightNoise noise;
@@ -253,7 +253,7 @@ class SurfaceSearch {
   [[nodiscard]] Progress stage(const std::string& name) const {
     return progress_ ? progress_(name) : Progress();
   }
-  [[nodiscard]] std::string under_way() const {
+  [[nodiscard]] std::string stage_text() const {
     if (result_.steps.empty()) return fmt::format("{} patches", light_->patches().count());
     return fmt::format("{} patches, error {} of {} wanted", light_->patches().count(),
                        scenes::percent(result_.steps.back().estimate),

@@ -59,8 +59,8 @@ void PatchSampler::finish_shadows() {
 void PatchSampler::gather(const SurfaceSpot& from, const base::SobolOwen4& sequence,
                           const base::SobolOwen4& aims, std::size_t point, std::size_t rays,
                           std::size_t entry) {
-  const bool is_even = incoming_.bright().empty();
-  const std::size_t aimed = is_even ? 0 : rays / cosine_rays_each;
+  const bool is_uniform = incoming_.bright().empty();
+  const std::size_t aimed = is_uniform ? 0 : rays / cosine_rays_each;
   MisContext share;
   share.cosine_samples = static_cast<double>(rays);
   share.aimed_rays = static_cast<double>(aimed);
@@ -83,7 +83,7 @@ void PatchSampler::gather(const SurfaceSpot& from, const base::SobolOwen4& seque
     for (std::size_t k = 0; k < RayPacket::width; ++k) {
       const scenes::Hit hit{hits.triangle[k], double(hits.u[k]), double(hits.v[k]),
                             double(hits.t[k]), hits.front[k] != 0};
-      share.cosine = is_even ? 0.0 : cosine[k];
+      share.cosine = is_uniform ? 0.0 : cosine[k];
       follow(hit, directions[k], share, entry);
     }
   }
@@ -121,19 +121,20 @@ void PatchSampler::aim(const SurfaceSpot& from, const std::array<float, 4>& u,
 void PatchSampler::follow(const scenes::Hit& first, const Vec3& along, const MisContext& share,
                           std::size_t entry) {
   double weight = 1.0 / share.cosine_samples;
-  const auto visit = [&](const scenes::Hit& hit, const Vec3& way, int step) {
+  const auto visit = [&](const scenes::Hit& hit, const Vec3& direction, int step) {
     if (step > 0) ++rays_;
     if (step > scenes::most_specular_steps) return false;
     if (hit.missed()) {
-      escape(way, weight, entry);
+      escape(direction, weight, entry);
       return false;
     }
     const std::uint32_t m = scene_.scene.triangles[hit.triangle].material;
     const bool front = hit.front || scene_.scene.materials[m].two_sided;
     if (front) {
-      const bool aimed_come = scenes::goes_straight_on(along, way);  // aimed rays find this hit,
-                                                                     // too
-      const double kept = aimed_come ? incoming_.residual_weight(hit, way, share) : 1.0;
+      const bool aimed_come =
+          scenes::goes_straight_on(along, direction);  // aimed rays find this hit,
+                                                       // too
+      const double kept = aimed_come ? incoming_.residual_weight(hit, direction, share) : 1.0;
       table_.add(hit, Rgb(base::pi * weight * kept), gathered(entry));
     }
     const bool glass = base::max_component(scene_.scene.materials[m].transmit) > 0.0;
@@ -147,11 +148,11 @@ void PatchSampler::follow(const scenes::Hit& first, const Vec3& along, const Mis
   scenes::follow_specular(scene_.scene, scene_.query, first, along, false, visit);
 }
 
-void PatchSampler::escape(const Vec3& way, double weight, std::size_t entry) {
+void PatchSampler::escape(const Vec3& direction, double weight, std::size_t entry) {
   escaped_ += weight;
   if (!scene_.effects.earth_by_gather) return;
-  const Rgb lx = base::pi * weight * scenes::earth_radiance(scene_.scene, way);
-  const std::size_t part = scenes::earth_part(scene_.scene, way);
+  const Rgb lx = base::pi * weight * scenes::earth_radiance(scene_.scene, direction);
+  const std::size_t part = scenes::earth_part(scene_.scene, direction);
   gathered(entry)[scene_.groups.earth + part] += lx;
   sky(entry)[part] += lx;
 }

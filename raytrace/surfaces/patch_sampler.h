@@ -70,7 +70,7 @@ class PatchSampler {
            std::size_t entry);
   void follow(const scenes::Hit& first, const Vec3& along, const MisContext& share,
               std::size_t entry);
-  void escape(const Vec3& way, double weight, std::size_t entry);
+  void escape(const Vec3& direction, double weight, std::size_t entry);
 
   const scenes::World& scene_;
   const std::vector<double>& kept_;

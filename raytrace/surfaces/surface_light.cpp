@@ -72,10 +72,10 @@ LightOnSurfaces::LightOnSurfaces(const scenes::World& scene, radiosity::Solution
   base::release(coarse.indirect_radiosity);
   light_.solution = std::move(coarse);
   sum_up();
-  if (!factors_.shares.is_root()) keep_what_samples_read();
+  if (!factors_.shares.is_root()) drop_unread();
 }
 
-void LightOnSurfaces::keep_what_samples_read() {
+void LightOnSurfaces::drop_unread() {
   for (std::vector<Rgb>* const unread : {&emitted_, &light_.sky, &factors_.kept_direct}) {
     base::release(*unread);
   }

@@ -58,8 +58,8 @@ class LightOnSurfaces {
 
   struct Finished {
     radiosity::Solution solution;
-    double lacks =
-        0.0;  // defect of the energy ledger, relative to the mean radiosity or the flux, luminance
+    // Defect of the energy ledger, relative to the mean radiosity or the flux, luminance.
+    double missing_share = 0.0;
   };
   [[nodiscard]] Finished finished() const;
 
@@ -67,7 +67,7 @@ class LightOnSurfaces {
   void sum_up();
   void take_gathered(const SurfaceSamples& samples, const SharedSamples& sharing,
                      std::span<const std::uint32_t> which, const std::vector<double>& more);
-  void keep_what_samples_read();
+  void drop_unread();
   [[nodiscard]] double fill(radiosity::Solution& solution) const;
   [[nodiscard]] std::vector<double> means_of(const std::vector<double>& residual,
                                              std::size_t columns) const;

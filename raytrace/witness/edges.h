@@ -19,8 +19,8 @@ struct SceneEdge {
   // Whether the edge is an outline from a point, or from a direction if is_distant.
   [[nodiscard]] bool is_outline(const Vec3& from, bool is_distant) const {
     if (is_border) return true;
-    const Vec3 way = is_distant ? from : from - a;
-    return glm::dot(way, normal_a) * glm::dot(way, normal_b) <= 0.0;
+    const Vec3 view = is_distant ? from : from - a;
+    return glm::dot(view, normal_a) * glm::dot(view, normal_b) <= 0.0;
   }
 };
 

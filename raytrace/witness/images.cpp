@@ -157,9 +157,9 @@ void ImageFinder::add_straight() {
       source.normal = -source.middle;
       source.middle = camera_.position + far_m * source.middle;
     }
-    const Vec3 way = source.middle - camera_.position;
-    if (glm::dot(way, camera_.forward) <= source.radius_m) continue;
-    if (!source.is_two_sided && glm::dot(way, source.normal) >= 0.0) continue;
+    const Vec3 offset = source.middle - camera_.position;
+    if (glm::dot(offset, camera_.forward) <= source.radius_m) continue;
+    if (!source.is_two_sided && glm::dot(offset, source.normal) >= 0.0) continue;
     Spot spot = scene_.spot_at(source.middle, source.radius_m);
     spot.area_px2 =
         source.area_m2 * camera_.film_per_m2(camera_.position, source.middle, source.normal);
@@ -203,8 +203,8 @@ void ImageFinder::add_beams() {
       spot.luminance = base::luminance(light * material.diffuse) / pi;
       if (!counts(spot)) continue;
       const Vec3 start = at + shared_.query.offset_m(hit.triangle) * normal;
-      const Vec3 way = camera_.position - start;
-      if (scene_.share(start, glm::normalize(way), glm::length(way)) > 0.0) lit_.add(spot);
+      const Vec3 offset = camera_.position - start;
+      if (scene_.share(start, glm::normalize(offset), glm::length(offset)) > 0.0) lit_.add(spot);
     }
   }
 }
@@ -257,28 +257,28 @@ void ImageFinder::reflect(const Facet& facet, const Source& source) {
   } else {
     const double height = glm::dot(source.middle - facet.corners.a, n);
     if (height <= 0.0) return;
-    const Vec3 way = source.middle - 2.0 * height * n - camera_.position;
-    image_m = glm::length(way);
-    view = way / image_m;
+    const Vec3 offset = source.middle - 2.0 * height * n - camera_.position;
+    image_m = glm::length(offset);
+    view = offset / image_m;
   }
   const Vec3 crossing = camera_.position - facet.height_m / glm::dot(view, n) * view;
   const Vec3 at =
       scenes::nearest_on_triangle(crossing, facet.corners.a, facet.corners.b, facet.corners.c);
-  const Vec3 way = at - camera_.position;
-  if (glm::dot(way, camera_.forward) <= 0.0) return;
+  const Vec3 offset = at - camera_.position;
+  if (glm::dot(offset, camera_.forward) <= 0.0) return;
   if (facet.is_glossy) add_highlight(facet, source, at);
   if (!facet.is_mirror || source.luminance <= 0.0) return;
   const double angle = source.is_distant ? source.angle_rad : source.radius_m / image_m;
-  const double off = glm::length(glm::cross(way, view)) / glm::length(way);
-  if (off > angle || glm::dot(way, view) <= 0.0) return;
+  const double off = glm::length(glm::cross(offset, view)) / glm::length(offset);
+  if (off > angle || glm::dot(offset, view) <= 0.0) return;
   double image_px2 = 0.0;
   if (source.is_distant) {
     image_px2 = pi * angle * angle * px2_per_sr(view);
   } else {
-    const Vec3 turned = source.normal - 2.0 * glm::dot(source.normal, n) * n;
-    if (!source.is_two_sided && glm::dot(view, turned) >= 0.0) return;
+    const Vec3 reflected = source.normal - 2.0 * glm::dot(source.normal, n) * n;
+    if (!source.is_two_sided && glm::dot(view, reflected) >= 0.0) return;
     image_px2 = source.area_m2 *
-                camera_.film_per_m2(camera_.position, camera_.position + image_m * view, turned);
+                camera_.film_per_m2(camera_.position, camera_.position + image_m * view, reflected);
   }
   const ShownPart shown = shown_part(facet.corners, camera_.position, view, angle);
   const Vec3 on_facet = shown.share > 0.0 ? shown.middle : at;
@@ -300,10 +300,10 @@ void ImageFinder::add_highlight(const Facet& facet, const Source& source, const 
   const double seen = glm::dot(out, facet.normal);
   const scenes::Brdf brdf{*facet.material, Rgb(0.0), facet.normal, 2.0 * seen * facet.normal - out,
                           seen};
-  const Vec3 way = source.is_distant ? source.middle : source.middle - at;
+  const Vec3 offset = source.is_distant ? source.middle : source.middle - at;
   const double source_m =
-      source.is_distant ? std::numeric_limits<double>::infinity() : glm::length(way);
-  const Vec3 in = source.is_distant ? way : way / source_m;
+      source.is_distant ? std::numeric_limits<double>::infinity() : glm::length(offset);
+  const Vec3 in = source.is_distant ? offset : offset / source_m;
   const double angle = source.is_distant ? source.angle_rad : source.radius_m / source_m;
   const double lobe_variance = 1.0 / facet.material->shininess;
   const double variance = lobe_variance + 0.25 * angle * angle;
@@ -347,9 +347,9 @@ double ImageFinder::visible_share(const Source& source) {
   for (const auto& [u, v] :
        {std::pair{0.0, 0.0}, {about, 0.0}, {-about, 0.0}, {0.0, about}, {0.0, -about}}) {
     const Vec3 to = source.middle + source.radius_m * (u * frame.tangent + v * frame.bitangent);
-    const Vec3 way = to - camera_.position;
-    const double distance = glm::length(way);
-    const scenes::Hit hit = scene_.closest(camera_.position, way / distance);
+    const Vec3 offset = to - camera_.position;
+    const double distance = glm::length(offset);
+    const scenes::Hit hit = scene_.closest(camera_.position, offset / distance);
     const scenes::Scene& scene = shared_.scene;
     const bool is_open = hit.missed() ||
                          hit.t >= distance * (1.0 - 1e-6) - shared_.query.offset_m(hit.triangle) ||
@@ -371,11 +371,11 @@ WitnessScene::WitnessScene(const ShadingScene& of, const CameraModel& through, d
 
 Spot WitnessScene::spot_at(const Vec3& point, double radius_m) const {
   Spot spot;
-  const Vec3 way = point - camera.position;
+  const Vec3 offset = point - camera.position;
   spot.film = camera.film_from(camera.position, point);
   const Vec3 rim = camera.position + camera.lens_radius_m * camera.right;
   spot.blur_px = glm::length(camera.film_from(rim, point) - spot.film);
-  spot.radius_px = radius_m / glm::length(way) *
+  spot.radius_px = radius_m / glm::length(offset) *
                    camera.projection.film_per_rad(camera.to_camera(point)) * camera.rows /
                    (2.0 * camera.projection.half_height);
   return spot;
@@ -386,9 +386,9 @@ double WitnessSource::illuminance(const Vec3& point) const {
   if (lamp != nullptr) {
     return base::luminance(scenes::sample_lamp(*lamp, point, 0.5, 0.5).normal_illuminance_lx);
   }
-  const Vec3 way = middle - point;
-  const double distance2 = glm::dot(way, way);
-  const double cosine = -glm::dot(way, normal) / std::sqrt(distance2);
+  const Vec3 offset = middle - point;
+  const double distance2 = glm::dot(offset, offset);
+  const double cosine = -glm::dot(offset, normal) / std::sqrt(distance2);
   return luminance * area_m2 / distance2 *
          (is_two_sided ? std::abs(cosine) : std::max(0.0, cosine));
 }

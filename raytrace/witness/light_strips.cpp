@@ -101,7 +101,7 @@ class LightStrips {
         if (reaches) {
           views_.push_back(
               {&source, &mirror, number, source.is_distant,
-               source.is_distant ? mirror.turned(source.middle) : mirror.image(source.middle)});
+               source.is_distant ? mirror.reflected(source.middle) : mirror.image(source.middle)});
         }
         ++number;
       }
@@ -206,9 +206,9 @@ class LightStrips {
     if (lit <= 0.0) return 0.0;
     // Takes the surface as a plane: where light through `target` reaches it.
     const auto on_plane = [&](const Vec3& target) {
-      const Vec3 way = strip.view.toward(target);
-      return target +
-             glm::dot(first->position - target, first->normal) / glm::dot(way, first->normal) * way;
+      const Vec3 direction = strip.view.toward(target);
+      return target + glm::dot(first->position - target, first->normal) /
+                          glm::dot(direction, first->normal) * direction;
     };
     const auto film = [&](const Vec3& target) {
       return camera_.film_from(camera_.position, on_plane(target));

@@ -94,17 +94,17 @@ class SourceStrips {
   void add_line(const glm::dvec2& a, const glm::dvec2& b) {
     // Clips the line to the picture (Liang and Barsky).
     double from = 0.0, to = 1.0;
-    const glm::dvec2 way = b - a, size(camera_.columns, camera_.rows);
+    const glm::dvec2 segment = b - a, size(camera_.columns, camera_.rows);
     for (int k = 0; k < 2; ++k) {
-      if (way[k] == 0.0 && (a[k] < 0.0 || a[k] > size[k])) return;
-      if (way[k] == 0.0) continue;
-      const double one = -a[k] / way[k], other = (size[k] - a[k]) / way[k];
+      if (segment[k] == 0.0 && (a[k] < 0.0 || a[k] > size[k])) return;
+      if (segment[k] == 0.0) continue;
+      const double one = -a[k] / segment[k], other = (size[k] - a[k]) / segment[k];
       from = std::max(from, std::min(one, other));
       to = std::min(to, std::max(one, other));
     }
-    const double length = glm::length(way);
+    const double length = glm::length(segment);
     if (from >= to || !(length > 0.0)) return;
-    const glm::dvec2 along = way / length;
+    const glm::dvec2 along = segment / length;
     const double first = from * length, last = to * length;
     const int steps = std::max(1, static_cast<int>(std::lround((last - first) / tuning::step_px)));
     for (int k = 0; k < steps; ++k) {

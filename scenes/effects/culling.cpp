@@ -132,10 +132,11 @@ class CullingPass {
     const Vec3 middle = (face.corner[0] + face.corner[1] + face.corner[2]) / 3.0;
     double radius = 0.0;
     for (const Vec3& p : face.corner) radius = std::max(radius, glm::length(p - middle));
-    const Vec3 way = middle - lamp.position;
-    const double distance = glm::length(way);
+    const Vec3 offset = middle - lamp.position;
+    const double distance = glm::length(offset);
     if (distance <= radius) return true;
-    const double off_axis = std::acos(std::clamp(glm::dot(lamp.axis, way) / distance, -1.0, 1.0));
+    const double off_axis =
+        std::acos(std::clamp(glm::dot(lamp.axis, offset) / distance, -1.0, 1.0));
     return off_axis - std::asin(radius / distance) <=
            0.5 * base::radians(lamp.field_deg) + rounding;
   }

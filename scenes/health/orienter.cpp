@@ -90,7 +90,7 @@ void Orienter::orient(std::size_t number, bool bodies_alone) {
     }
     if (object.orient != Orient::Mended) {
       const bool cavity = object.orient == Orient::Outward && is_cavity(number, p);
-      if (!cavity) turn_as_told(part, object.orient, counts);
+      if (!cavity) flip_as_given(part, object.orient, counts);
       continue;
     }
     const Front front = front_by_normals(part);
@@ -100,41 +100,41 @@ void Orienter::orient(std::size_t number, bool bodies_alone) {
         counts.mixed_edges += part.mixed_edges;
         if (part.mixed_edges > 0) counts.seen_inside += seen_from_inside(part);
       } else if (against || part.mixed_edges > 0) {
-        counts.by_normals += turn(part, against);
+        counts.by_normals += flip(part, against);
       }
       continue;
     }
     const bool inward = part.volume_m3 < 0.0;
     if (!inward && !against && part.mixed_edges == 0) continue;
     if (is_cavity(number, p)) continue;
-    const Inside inside = what_is_inside(number, p);
+    const Inside inside = contents_of(number, p);
     if (inside == Inside::Nothing) {
-      if (inward || part.mixed_edges > 0) tally(part, turn(part, inward), counts);
+      if (inward || part.mixed_edges > 0) tally(part, flip(part, inward), counts);
     } else if (front != Front::Unknown) {
-      if (against || part.mixed_edges > 0) counts.by_normals += turn(part, against);
+      if (against || part.mixed_edges > 0) counts.by_normals += flip(part, against);
     } else if (part.mixed_edges > 0) {
       // A part around a camera is a room; around other objects most of the area decides.
       const bool keeps_side = inside == Inside::Things || inward;
-      tally(part, turn(part, !keeps_side), counts);
+      tally(part, flip(part, !keeps_side), counts);
     }
   }
   say(object, counts);
 }
 
 // Orients by "outward" or "inward". A flat part has neither side; its faces get equal orientation.
-void Orienter::turn_as_told(SurfacePart& part, Orient word, Counts& counts) {
+void Orienter::flip_as_given(SurfacePart& part, Orient word, Counts& counts) {
   const double edge = glm::length(part.high - part.low);
   const double volume = part.closed() ? part.volume_m3 : cup_volume(part);
   const bool flat = std::abs(volume) <= SurfacePart::flat_share * edge * edge * edge;
   const bool all = !flat && (volume < 0.0) == (word == Orient::Outward);
-  if (all || part.mixed_edges > 0) tally(part, turn(part, all), counts);
+  if (all || part.mixed_edges > 0) tally(part, flip(part, all), counts);
 }
 
-void Orienter::tally(const SurfacePart& part, std::size_t turned, Counts& counts) {
-  if (turned == part.triangles.size()) {
+void Orienter::tally(const SurfacePart& part, std::size_t flipped, Counts& counts) {
+  if (flipped == part.triangles.size()) {
     ++counts.bodies;
   } else {
-    counts.triangles += turned;
+    counts.triangles += flipped;
   }
 }
 
@@ -143,7 +143,7 @@ Orienter::Front Orienter::front_by_normals(const SurfacePart& part) const {
   double all = 0.0, along = 0.0, against = 0.0;
   for (std::size_t k = 0; k < part.triangles.size(); ++k) {
     const std::uint32_t t = part.triangles[k];
-    const Vec3 normal = (part.turned[k] != 0 ? -1.0 : 1.0) * corners_of(scene_, t).normal();
+    const Vec3 normal = (part.flipped[k] != 0 ? -1.0 : 1.0) * corners_of(scene_, t).normal();
     const double area = glm::length(normal);
     const double side = glm::dot(normal, fronts_.of(scene_.triangles[t].polygon));
     all += area;
@@ -162,38 +162,38 @@ double Orienter::seen_from_inside(const SurfacePart& part) const {
   for (const Camera& camera : scene_.cameras) {
     for (std::size_t k = 0; k < part.triangles.size(); ++k) {
       const Corners at = corners_of(scene_, part.triangles[k]).seen_from(camera.position);
-      sum += (part.turned[k] != 0 ? -outward : outward) * at.solid_angle();
+      sum += (part.flipped[k] != 0 ? -outward : outward) * at.solid_angle();
     }
   }
   return sum;
 }
 
-std::size_t Orienter::turn(SurfacePart& part, bool all) {
-  std::size_t turned = 0;
+std::size_t Orienter::flip(SurfacePart& part, bool all) {
+  std::size_t flipped = 0;
   for (std::size_t k = 0; k < part.triangles.size(); ++k) {
-    if ((part.turned[k] != 0) == all) continue;
+    if ((part.flipped[k] != 0) == all) continue;
     auto& vertex = scene_.triangles[part.triangles[k]].vertex;
     std::swap(vertex[1], vertex[2]);
-    ++turned;
+    ++flipped;
   }
   keep_parallelograms(part, all);
   // Later tests use the new orientation.
   if (all) part.volume_m3 = -part.volume_m3;
-  std::fill(part.turned.begin(), part.turned.end(), char{0});
+  std::fill(part.flipped.begin(), part.flipped.end(), char{0});
   part.mixed_edges = 0;
-  return turned;
+  return flipped;
 }
 
 // (0,1,2), (0,2,3) of a parallelogram became (0,2,1), (0,3,2); restores the order.
 void Orienter::keep_parallelograms(const SurfacePart& part, bool all) {
-  const auto is_turned = [&](std::size_t k) { return (part.turned[k] != 0) != all; };
+  const auto is_flipped = [&](std::size_t k) { return (part.flipped[k] != 0) != all; };
   auto& triangles = scene_.triangles;
   for (std::size_t k = 0; k + 1 < part.triangles.size(); ++k) {
     const std::uint32_t t = part.triangles[k];
     const auto same = [&](std::uint32_t other) {
       return other < triangles.size() && triangles[other].polygon == triangles[t].polygon;
     };
-    if (!is_turned(k) || !is_turned(k + 1) || part.triangles[k + 1] != t + 1) continue;
+    if (!is_flipped(k) || !is_flipped(k + 1) || part.triangles[k + 1] != t + 1) continue;
     if (same(t + 1) && !same(t + 2) && !(t > 0 && same(t - 1))) {
       std::swap(triangles[t], triangles[t + 1]);
     }
@@ -210,7 +210,7 @@ bool Orienter::Parts::any_beside(const SurfacePart& part, Holds holds) const {
   return std::any_of(wide.begin(), wide.end(), holds);
 }
 
-Orienter::Inside Orienter::what_is_inside(std::size_t number, std::size_t p) {
+Orienter::Inside Orienter::contents_of(std::size_t number, std::size_t p) {
   const SurfacePart& part = parts_of(number).all[p];
   for (const Camera& camera : scene_.cameras) {
     if (solid_angle_of(scene_, part, camera.position) > on_it) return Inside::Camera;
@@ -264,7 +264,7 @@ double Orienter::cup_volume(const SurfacePart& part) const {
   double volume = 0.0;
   for (std::size_t k = 0; k < part.triangles.size(); ++k) {
     const Corners at = corners_of(scene_, part.triangles[k]).seen_from(middle);
-    volume += (part.turned[k] != 0 ? -1.0 : 1.0) * at.triple_product() / 6.0;
+    volume += (part.flipped[k] != 0 ? -1.0 : 1.0) * at.triple_product() / 6.0;
   }
   return volume;
 }

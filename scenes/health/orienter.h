@@ -51,14 +51,14 @@ class Orienter {
   void orient(std::size_t object, bool bodies_alone);
   [[nodiscard]] Parts& parts_of(std::size_t object);
   // Returns the number of triangles turned.
-  std::size_t turn(SurfacePart& part, bool all);
-  void turn_as_told(SurfacePart& part, Orient word, Counts& counts);
-  static void tally(const SurfacePart& part, std::size_t turned, Counts& counts);
+  std::size_t flip(SurfacePart& part, bool all);
+  void flip_as_given(SurfacePart& part, Orient word, Counts& counts);
+  static void tally(const SurfacePart& part, std::size_t flipped, Counts& counts);
   [[nodiscard]] Front front_by_normals(const SurfacePart& part) const;
   // Positive if the cameras see more of its inside than of its outside.
   [[nodiscard]] double seen_from_inside(const SurfacePart& part) const;
   void keep_parallelograms(const SurfacePart& part, bool all);
-  [[nodiscard]] Inside what_is_inside(std::size_t object, std::size_t part);
+  [[nodiscard]] Inside contents_of(std::size_t object, std::size_t part);
   [[nodiscard]] bool is_cavity(std::size_t object, std::size_t part);
   [[nodiscard]] bool stands_in(const SurfacePart& outer, const SurfacePart& inner) const;
   [[nodiscard]] double cup_volume(const SurfacePart& part) const;

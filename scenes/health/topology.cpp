@@ -144,20 +144,20 @@ class Edges {
 
 // Sets the part's orientation to that with the larger area and measures it.
 void measure(const Scene& scene, SurfacePart& part) {
-  double kept = 0.0, turned = 0.0;
+  double kept = 0.0, flipped = 0.0;
   part.low = part.high = scene.vertices[scene.triangles[part.triangles.front()].vertex[0]];
   const Vec3 origin = part.low;
   for (std::size_t k = 0; k < part.triangles.size(); ++k) {
     const Corners at = corners_of(scene, part.triangles[k]).seen_from(origin);
-    (part.turned[k] != 0 ? turned : kept) += glm::length(at.normal());
-    part.volume_m3 += (part.turned[k] != 0 ? -1.0 : 1.0) * at.triple_product() / 6.0;
+    (part.flipped[k] != 0 ? flipped : kept) += glm::length(at.normal());
+    part.volume_m3 += (part.flipped[k] != 0 ? -1.0 : 1.0) * at.triple_product() / 6.0;
     for (const std::uint32_t corner : scene.triangles[part.triangles[k]].vertex) {
       part.low = glm::min(part.low, scene.vertices[corner]);
       part.high = glm::max(part.high, scene.vertices[corner]);
     }
   }
-  if (turned <= kept) return;
-  for (char& t : part.turned) t = t == 0 ? 1 : 0;
+  if (flipped <= kept) return;
+  for (char& t : part.flipped) t = t == 0 ? 1 : 0;
   part.volume_m3 = -part.volume_m3;
 }
 
@@ -202,7 +202,7 @@ std::vector<SurfacePart> surface_parts(const Scene& scene, const Object& object,
     }
     number[t] = number[root];
     parts[number[t]].triangles.push_back(object.first_triangle + t);
-    parts[number[t]].turned.push_back(against);
+    parts[number[t]].flipped.push_back(against);
   }
   const auto part_of = [&](std::uint32_t t) -> SurfacePart& { return parts[number[t]]; };
   for (const std::uint32_t t : torn) part_of(t).orientable = false;
@@ -225,7 +225,7 @@ double solid_angle_of(const Scene& scene, const SurfacePart& part, const Vec3& p
   double angle = 0.0;
   for (std::size_t k = 0; k < part.triangles.size(); ++k) {
     const double own = corners_of(scene, part.triangles[k]).seen_from(point).solid_angle();
-    angle += part.turned[k] != 0 ? -own : own;
+    angle += part.flipped[k] != 0 ? -own : own;
   }
   return std::abs(angle);
 }

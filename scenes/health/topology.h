@@ -18,7 +18,7 @@ namespace earthshine::scenes {
 // Triangles connected by edges that two of them share.
 struct SurfacePart {
   std::vector<std::uint32_t> triangles;  // of the scene, ascending
-  std::vector<char> turned;              // per triangle: reverse for consistency
+  std::vector<char> flipped;             // per triangle: reverse for consistency
   std::size_t open_edges = 0;            // with one triangle
   std::size_t crowded_edges = 0;         // with more than two; each counts for one of their parts
   bool crowded = false;                  // has an edge with more than two triangles

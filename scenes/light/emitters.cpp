@@ -72,11 +72,11 @@ Vec3 point_on(const FlatEmitter& emitter, double u, double v) {
 LightSample toward_area(const Vec3& point, const Vec3& on_source, const Vec3& normal,
                         bool two_sided, const Rgb& exitance, double area_m2) {
   LightSample sample;
-  const Vec3 way = on_source - point;
-  const double distance2 = glm::dot(way, way);
+  const Vec3 offset = on_source - point;
+  const double distance2 = glm::dot(offset, offset);
   if (distance2 <= 0.0) return sample;
   sample.distance_m = std::sqrt(distance2);
-  sample.direction = way / sample.distance_m;
+  sample.direction = offset / sample.distance_m;
   double cosine = -glm::dot(sample.direction, normal);
   if (two_sided) cosine = std::abs(cosine);
   if (cosine > 0.0) sample.normal_illuminance_lx = exitance * (cosine * area_m2 / (pi * distance2));
@@ -85,11 +85,11 @@ LightSample toward_area(const Vec3& point, const Vec3& on_source, const Vec3& no
 
 LightSample sample_flat(const FlatEmitter& emitter, const Vec3& point, double u, double v,
                         Spread spread) {
-  const Vec3 way = emitter.corner - point;
+  const Vec3 offset = emitter.corner - point;
   const double longest2 =
       std::max(glm::dot(emitter.edge1, emitter.edge1), glm::dot(emitter.edge2, emitter.edge2));
-  const double height = -glm::dot(way, emitter.normal);  // of the point over the front
-  const bool is_near = glm::dot(way, way) < near_sizes * near_sizes * longest2;
+  const double height = -glm::dot(offset, emitter.normal);  // of the point over the front
+  const bool is_near = glm::dot(offset, offset) < near_sizes * near_sizes * longest2;
   // In its own plane the emitter is invisible, and the solid-angle formulas break down.
   const bool beside = std::abs(height) < 1e-7 * std::sqrt(longest2);
   const bool has_formula = emitter.shape == FlatShape::Triangle || is_rectangle(emitter);

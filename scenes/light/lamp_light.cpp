@@ -40,9 +40,9 @@ FlatEmitter rectangle(const Lamp& lamp) {
 // the solid angle of the square around the disk, and samples beside the disk give 0. On the axis
 // both methods have equal noise where the height equals the radius (a sixth of the mean square).
 LightSample sample_disk(const Lamp& lamp, const Vec3& point, double u, double v, Spread spread) {
-  const Vec3 way = lamp.position - point;
+  const Vec3 offset = lamp.position - point;
   const double radius2 = lamp.radius_m * lamp.radius_m;
-  if (spread == Spread::OverArea || glm::dot(way, way) > radius2) {
+  if (spread == Spread::OverArea || glm::dot(offset, offset) > radius2) {
     return toward_area(point, disk_point(lamp, u, v), lamp.axis, false, lamp.exitance,
                        surface_area(lamp));
   }
@@ -57,7 +57,7 @@ LightSample sample_disk(const Lamp& lamp, const Vec3& point, double u, double v,
                            false,
                            FlatShape::Parallelogram};
   const LightSample sample = sample_flat(square, point, u, v, spread);
-  const Vec3 from_centre = sample.distance_m * sample.direction - way;
+  const Vec3 from_centre = sample.distance_m * sample.direction - offset;
   return glm::dot(from_centre, from_centre) > radius2 ? LightSample{} : sample;
 }
 
@@ -78,11 +78,11 @@ double relative_intensity(const Lamp& lamp, const Vec3& direction) {
 ShadowSegment shadow_segment(const LightSample& sample, const Vec3& point, const Vec3& origin) {
   constexpr double short_of_it = 1e-5;
   if (!std::isfinite(sample.distance_m)) return {sample.direction, sample.distance_m};
-  const Vec3 way = point + sample.distance_m * sample.direction + sample.lift_m - origin;
-  const double length_m = glm::length(way);
+  const Vec3 offset = point + sample.distance_m * sample.direction + sample.lift_m - origin;
+  const double length_m = glm::length(offset);
   // The source lies between the offsets of both surfaces: they touch.
-  if (glm::dot(way, sample.direction) <= 0.0) return {sample.direction, 0.0};
-  return {way / length_m, length_m * (1.0 - short_of_it)};
+  if (glm::dot(offset, sample.direction) <= 0.0) return {sample.direction, 0.0};
+  return {offset / length_m, length_m * (1.0 - short_of_it)};
 }
 
 double field_cosine(const Lamp& lamp) { return std::cos(base::radians(lamp.field_deg / 2)); }
@@ -106,11 +106,11 @@ namespace {
 template <class Relative>
 LightSample sample_point(const Lamp& lamp, const Vec3& point, const Relative& relative) {
   LightSample sample;
-  const Vec3 way = lamp.position - point;
-  const double distance2 = glm::dot(way, way);
+  const Vec3 offset = lamp.position - point;
+  const double distance2 = glm::dot(offset, offset);
   if (distance2 <= 0.0) return sample;
   sample.distance_m = std::sqrt(distance2);
-  sample.direction = way / sample.distance_m;
+  sample.direction = offset / sample.distance_m;
   sample.normal_illuminance_lx = lamp.intensity_cd * (relative(-sample.direction) / distance2);
   return sample;
 }
@@ -230,8 +230,8 @@ LightSample thrown(const LightSample& sample, const FlatMirror& mirror, std::uin
   if (glm::dot(from_centre, from_centre) > mirror.radius_m * mirror.radius_m * (1.0 + 1e-9)) {
     return {};
   }
-  return {mirror.turned(sample.direction), sample.distance_m, sample.normal_illuminance_lx, number,
-          mirror.turned(sample.lift_m)};
+  return {mirror.reflected(sample.direction), sample.distance_m, sample.normal_illuminance_lx,
+          number, mirror.reflected(sample.lift_m)};
 }
 
 // Light from d, within the angle a of the disc's middle s, meets the mirror's plane at h d / (d n)

@@ -45,8 +45,8 @@ void join_axes(LightBounds& a, const LightBounds& b) {
     a.axes_rad = pi;
     return;
   }
-  const double turn = half - a.axes_rad;
-  a.axis = glm::normalize(std::cos(turn) * a.axis + std::sin(turn) * glm::normalize(across));
+  const double angle = half - a.axes_rad;
+  a.axis = glm::normalize(std::cos(angle) * a.axis + std::sin(angle) * glm::normalize(across));
   a.axes_rad = half;
 }
 
@@ -154,12 +154,12 @@ std::uint32_t LightTree::build(const std::vector<LightBounds>& lights, std::uint
 }
 
 LightTree::Value LightTree::value_of(const Node& node, const Receiver& receiver) {
-  const Vec3 way = node.centre - receiver.point;
-  const double distance2 = glm::dot(way, way);
+  const Vec3 offset = node.centre - receiver.point;
+  const double distance2 = glm::dot(offset, offset);
   double factor = node.intensity_cd;
   double reflected = receiver.diffuse + receiver.specular;
   if (distance2 > node.radius2 && distance2 > nearest2) {
-    const Vec3 direction = way / std::sqrt(distance2);
+    const Vec3 direction = offset / std::sqrt(distance2);
     const double sine2 = node.radius2 / distance2;
     const Angle seen{std::sqrt(1.0 - sine2), std::sqrt(sine2)};  // half angle of the sphere
     const bool any_side = receiver.normal == Vec3(0.0);
@@ -181,7 +181,7 @@ LightTree::Value LightTree::value_of(const Node& node, const Receiver& receiver)
       if (cosine > 0.0) reflected += receiver.specular * std::pow(cosine, receiver.shininess);
     }
   }
-  const Vec3 beside = glm::max(Vec3(0.0), glm::abs(way) - node.half);
+  const Vec3 beside = glm::max(Vec3(0.0), glm::abs(offset) - node.half);
   const double value = factor * reflected;
   return {value / std::max(glm::dot(beside, beside), nearest2),
           value / std::max({distance2, node.radius2, nearest2})};

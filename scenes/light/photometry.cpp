@@ -84,9 +84,9 @@ double Photometry::relative(double theta_rad, double phi_rad) const {
   const std::size_t row = interval(vertical_, theta);
   const double y = (theta - vertical_[row]) / (vertical_[row + 1] - vertical_[row]);
   if (is_round_) return (1.0 - y) * at(0, row) + y * at(0, row + 1);
-  constexpr double turn = 2.0 * base::pi;
+  constexpr double full_circle = 2.0 * base::pi;
   double from_first = phi_rad - horizontal_.front();
-  from_first -= turn * std::floor(from_first / turn);
+  from_first -= full_circle * std::floor(from_first / full_circle);
   const double phi = std::min(horizontal_.front() + from_first, horizontal_.back());
   const std::size_t k = interval(horizontal_, phi);
   const double x = (phi - horizontal_[k]) / (horizontal_[k + 1] - horizontal_[k]);

@@ -28,9 +28,9 @@ class ShadowQueue {
   template <class Take>
   void add(const LightSample& sample, const Vec3& point, const Vec3& origin, const Item& item,
            const Take& take, std::size_t order = 0) {
-    const ShadowSegment way = shadow_segment(sample, point, origin);
-    if (way.reach_m <= 0.0) return;
-    waiting_.push_back({origin, way, sample.mirror, order, item});
+    const ShadowSegment segment = shadow_segment(sample, point, origin);
+    if (segment.reach_m <= 0.0) return;
+    waiting_.push_back({origin, segment, sample.mirror, order, item});
     if (waiting_.size() == most_) trace(take);
   }
 
@@ -49,7 +49,7 @@ class ShadowQueue {
       const std::size_t count = std::min(width, waiting_.size() - first);
       for (std::size_t k = 0; k < count; ++k) {
         const Ray& ray = waiting_[first + k];
-        query_.set(packet, k, ray.origin, ray.way.direction, ray.way.reach_m);
+        query_.set(packet, k, ray.origin, ray.segment.direction, ray.segment.reach_m);
         mirrors[k] = ray.mirror;
       }
       query_.light_shares(packet, mirrors.data(), count, shares.data());
@@ -64,7 +64,7 @@ class ShadowQueue {
  private:
   struct Ray {
     Vec3 origin;
-    ShadowSegment way;
+    ShadowSegment segment;
     std::uint32_t mirror;
     std::size_t order;
     Item item;

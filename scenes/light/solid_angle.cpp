@@ -73,8 +73,8 @@ SolidAngleSample sample_triangle(const Vec3& point, const Vec3& corner, const Ve
       below != 0.0 ? std::clamp(((q * t - p * s) * cos_alpha - q) / below, -1.0, 1.0) : 1.0;
   const Vec3 on_ac = cosine * a + std::sqrt(1.0 - cosine * cosine) * across(a, c);
   const double z = 1.0 - v * (1.0 - glm::dot(on_ac, b));
-  const Vec3 way = z * b + std::sqrt(std::max(0.0, 1.0 - z * z)) * across(b, on_ac);
-  return {glm::normalize(way), solid_angle};
+  const Vec3 direction = z * b + std::sqrt(std::max(0.0, 1.0 - z * z)) * across(b, on_ac);
+  return {glm::normalize(direction), solid_angle};
 }
 
 }  // namespace earthshine::scenes

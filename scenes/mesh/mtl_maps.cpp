@@ -81,7 +81,7 @@ bool MtlMaps::read(const TextLines& line, bool is_mask, TextureMap& map) {
   // v points up in these files, here down from the upper edge: with w = 1 - v and the format's v' =
   // o + s v, w' = 1 - v' = (1 - o - s) + s w.
   TextureTransform transform;
-  transform.turn = glm::dmat2(scale.x, 0.0, 0.0, scale.y);
+  transform.matrix = glm::dmat2(scale.x, 0.0, 0.0, scale.y);
   transform.shift = {shift.x, 1.0 - shift.y - scale.y};
   map.transform = std::make_shared<const TextureTransform>(transform);
   return true;

@@ -251,9 +251,9 @@ class PlyReader {
         }
         const std::uint32_t corner = checked_index(index);
         const auto [a, b] = last;
-        const bool turned = corners_so_far % 2 == 1;
+        const bool flipped = corners_so_far % 2 == 1;
         if (++corners_so_far > 2 && a != b && b != corner && corner != a) {
-          add_face(turned ? std::array{b, a, corner} : std::array{a, b, corner});
+          add_face(flipped ? std::array{b, a, corner} : std::array{a, b, corner});
         }
         last = {b, corner};
       }

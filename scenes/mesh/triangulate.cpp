@@ -11,7 +11,7 @@ using Point = glm::dvec2;
 constexpr double area_tolerance = 1e-4;  // relative
 
 // Twice the signed area of (a, b, c).
-double turn(const Point& a, const Point& b, const Point& c) {
+double orientation(const Point& a, const Point& b, const Point& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
@@ -53,20 +53,21 @@ class EarClipper {
 
  private:
   [[nodiscard]] const Point& at(std::size_t i) const { return points_[corners_[i]]; }
-  [[nodiscard]] double turn_at(std::size_t i) const {
-    return turn(at(previous_[i]), at(i), at(next_[i]));
+  [[nodiscard]] double orientation_at(std::size_t i) const {
+    return orientation(at(previous_[i]), at(i), at(next_[i]));
   }
 
   [[nodiscard]] bool is_ear(std::size_t i) const {
     const Point& a = at(previous_[i]);
     const Point& b = at(i);
     const Point& c = at(next_[i]);
-    if (turn(a, b, c) <= flat_) return false;
+    if (orientation(a, b, c) <= flat_) return false;
     for (std::size_t k = next_[next_[i]]; k != previous_[i]; k = next_[k]) {
       const Point& p = at(k);
       // A corner that coincides with one of the ear's (a bridge to a hole) does not block it.
       if (p == a || p == b || p == c) continue;
-      if (turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0) return false;
+      if (orientation(a, b, p) >= 0.0 && orientation(b, c, p) >= 0.0 && orientation(c, a, p) >= 0.0)
+        return false;
     }
     return true;
   }
@@ -79,16 +80,16 @@ class EarClipper {
     const Point& c = at(next_[i]);
     const Point ab = b - a, bc = c - b, ca = a - c;
     const double longest = std::max({glm::dot(ab, ab), glm::dot(bc, bc), glm::dot(ca, ca)});
-    const bool frees_straight =
-        std::abs(turn_at(previous_[i])) <= flat_ || std::abs(turn_at(next_[i])) <= flat_;
-    return turn(a, b, c) / longest + (frees_straight ? 2.0 : 0.0);
+    const bool frees_straight = std::abs(orientation_at(previous_[i])) <= flat_ ||
+                                std::abs(orientation_at(next_[i])) <= flat_;
+    return orientation(a, b, c) / longest + (frees_straight ? 2.0 : 0.0);
   }
 
   [[nodiscard]] std::size_t best_ear(std::size_t start) const {
     std::size_t best = start;
     double best_quality = -1.0;
     std::size_t straightest = start;
-    double least_turn = std::abs(turn_at(start));
+    double least = std::abs(orientation_at(start));
     std::size_t i = start;
     do {
       if (ear_[i]) {
@@ -98,9 +99,9 @@ class EarClipper {
           best_quality = q;
         }
       }
-      if (std::abs(turn_at(i)) < least_turn) {
+      if (std::abs(orientation_at(i)) < least) {
         straightest = i;
-        least_turn = std::abs(turn_at(i));
+        least = std::abs(orientation_at(i));
       }
       i = next_[i];
     } while (i != start);
@@ -125,7 +126,7 @@ void judge(std::span<const Vec3> corners, std::span<const Point> points, double 
            Triangulation& result) {
   double seen_area = 0.0;  // along the normal, with all triangles counted positive
   for (const auto& t : result.triangles) {
-    seen_area += 0.5 * std::abs(turn(points[t[0]], points[t[1]], points[t[2]]));
+    seen_area += 0.5 * std::abs(orientation(points[t[0]], points[t[1]], points[t[2]]));
     result.triangle_area += triangle_area(corners[t[0]], corners[t[1]], corners[t[2]]);
   }
   std::erase_if(result.triangles, [&](const auto& t) {
@@ -206,12 +207,13 @@ void triangulate(std::span<const Vec3> corners, double smallest_area, Triangulat
     points[i] = {glm::dot(local, frame.tangent), glm::dot(local, frame.bitangent)};
   }
   const double flat = 1e-9 * result.area;
-  const auto turn_at = [&](std::size_t i) {
+  const auto orientation_at = [&](std::size_t i) {
     const std::size_t m = ring.size();
-    return turn(points[ring[(i + m - 1) % m]], points[ring[i]], points[ring[(i + 1) % m]]);
+    return orientation(points[ring[(i + m - 1) % m]], points[ring[i]], points[ring[(i + 1) % m]]);
   };
-  const bool convex_quad = ring.size() == 4 && turn_at(0) > flat && turn_at(1) > flat &&
-                           turn_at(2) > flat && turn_at(3) > flat;
+  const bool convex_quad = ring.size() == 4 && orientation_at(0) > flat &&
+                           orientation_at(1) > flat && orientation_at(2) > flat &&
+                           orientation_at(3) > flat;
   if (convex_quad) {
     result.triangles.push_back({ring[0], ring[1], ring[2]});
     result.triangles.push_back({ring[0], ring[2], ring[3]});

@@ -92,10 +92,10 @@ class Tracer {
     const std::uint32_t no_mirrors[RayPacket::width] = {no_mirror, no_mirror, no_mirror, no_mirror,
                                                         no_mirror, no_mirror, no_mirror, no_mirror};
     for (const Camera* camera : cameras_) {
-      const Vec3 way = camera->position - point;
-      const double distance = glm::length(way);
+      const Vec3 offset = camera->position - point;
+      const double distance = glm::length(offset);
       if (!(distance > 0.0)) return true;
-      query_.set(rays, 0, point, way / distance, distance);
+      query_.set(rays, 0, point, offset / distance, distance);
       Rgb share(0.0);
       query_.light_shares(rays, no_mirrors, 1, &share);
       if (base::max_component(share) > 0.0) return true;

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t grid = 24;    // rays per side
 constexpr double near_share = 0.9;  // of the rays
 // Share of the distance to the target below which a surface that fills the picture is too near.
-constexpr double near_of_way = 0.05;
+constexpr double nearest_share = 0.05;
 constexpr double most_backs = 0.5;
 // A bay of 15 m read in mm measures 15 mm; the smallest space with a camera measures decimetres.
 constexpr double small_m = 0.1;
@@ -39,8 +39,9 @@ struct CameraFrame {
     return glm::normalize(d.z * forward + d.x * right - d.y * up);
   }
   [[nodiscard]] bool shows(const Vec3& point) const {
-    const Vec3 way = point - position;
-    return projection.shows({glm::dot(way, right), -glm::dot(way, up), glm::dot(way, forward)});
+    const Vec3 offset = point - position;
+    return projection.shows(
+        {glm::dot(offset, right), -glm::dot(offset, up), glm::dot(offset, forward)});
   }
 };
 
@@ -68,7 +69,7 @@ std::size_t most_of(const std::vector<std::size_t>& counts) {
 
 // 1 if a face at `point`, whose back is visible, turns its back to the middle of the object's box,
 // -1 if away from it; 0 for a flat object. normal: of the front.
-std::ptrdiff_t turns_inward(const Box& box, const Vec3& point, const Vec3& normal) {
+std::ptrdiff_t inward(const Box& box, const Vec3& point, const Vec3& normal) {
   constexpr double flat = 1e-6;  // of the box
   const double inward = glm::dot(box.middle() - point, -normal);
   if (std::abs(inward) <= flat * box.diagonal()) return 0;
@@ -86,7 +87,7 @@ std::string length_text(double metres) {
 }
 
 std::string blocked_text(const Scene& scene, const View& view) {
-  const double way = glm::length(view.camera->look_at - view.camera->position);
+  const double distance = glm::length(view.camera->look_at - view.camera->position);
   const std::size_t object = most_of(view.hits_of);
   return fmt::format(
       "camera {} is inside, right behind or right before the object {}: that fills {:.0f} % of its "
@@ -94,7 +95,7 @@ std::string blocked_text(const Scene& scene, const View& view) {
       "{} away, and the camera looks at a point {} away; move the camera in front of that object",
       in_quotes(view.camera->name), in_quotes(scene.objects[object].name),
       100.0 * share(view.hits_of[object], view.rays), length_text(view.farthest_near_m),
-      length_text(way));
+      length_text(distance));
 }
 
 std::optional<std::string> backs_text(const Scene& scene, const View& view) {
@@ -102,14 +103,14 @@ std::optional<std::string> backs_text(const Scene& scene, const View& view) {
   const std::size_t number = most_of(view.backs_of);
   const Object& object = scene.objects[number];
   const std::ptrdiff_t inner = view.inner_backs_of[number];
-  const char* const turn = object.orient == Orient::AsIs || inner == 0
-                               ? "turn its faces over (inward)"
-                           : inner > 0 ? "say orient = \"inward\" there"
-                                       : "say orient = \"outward\" there";
+  const char* const remedy = object.orient == Orient::AsIs || inner == 0
+                                 ? "turn its faces over (inward)"
+                             : inner > 0 ? "say orient = \"inward\" there"
+                                         : "say orient = \"outward\" there";
   return fmt::format(
       "most of what camera {} sees ({:.0f} %) is back faces, which are black, the most of them of "
       "the object {}; {}, or orient = \"two-sided\", or move the camera to the other side",
-      in_quotes(view.camera->name), 100.0 * view.back_share(), in_quotes(object.name), turn);
+      in_quotes(view.camera->name), 100.0 * view.back_share(), in_quotes(object.name), remedy);
 }
 
 std::optional<std::string> field_text(const Scene& scene, const View& view) {
@@ -125,8 +126,8 @@ std::optional<std::string> field_text(const Scene& scene, const View& view) {
 }  // namespace
 
 bool View::is_blocked() const {
-  const double way = glm::length(camera->look_at - camera->position);
-  return farthest_near_m < near_of_way * way &&
+  const double distance = glm::length(camera->look_at - camera->position);
+  return farthest_near_m < nearest_share * distance &&
          share(*std::max_element(hits_of.begin(), hits_of.end()), rays) >= near_share;
 }
 
@@ -169,7 +170,7 @@ View sample_view(const Scene& scene, const RayQuery& query, const Camera& camera
         ++view.backs;
         ++view.backs_of[triangle.object];
         view.inner_backs_of[triangle.object] +=
-            turns_inward(bounds[triangle.object], point, triangle_normal(scene, hit.triangle));
+            inward(bounds[triangle.object], point, triangle_normal(scene, hit.triangle));
       }
       view.seen.add(point);
       distances.push_back(glm::length(point - camera.position));

@@ -22,13 +22,13 @@ class Motions {
     if (scene.linkage == nullptr) return;
     before_ = after_ = joints_now(scene);
     if (change.joints.empty()) return;
-    Scene turned;  // with what joints depend on
-    turned.orbit = scene.orbit;
-    turned.sun = scene.sun;
+    Scene moved;  // with what joints depend on
+    moved.orbit = scene.orbit;
+    moved.sun = scene.sun;
     Linkage linkage = *scene.linkage;
     for (const auto& [joint, angle_deg] : change.joints) linkage.joints[joint].motion = angle_deg;
-    turned.linkage = linkage_ = std::make_shared<const Linkage>(std::move(linkage));
-    after_ = joints_now(turned);
+    moved.linkage = linkage_ = std::make_shared<const Linkage>(std::move(linkage));
+    after_ = joints_now(moved);
   }
 
   [[nodiscard]] const std::shared_ptr<const Linkage>& linkage() const { return linkage_; }

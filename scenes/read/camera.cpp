@@ -64,11 +64,11 @@ void read_lens(Camera& camera, const TableReader& table) {
   const auto focus = table.length("focus", 1.0, above_zero);
   const auto aperture = table.length("aperture", 1.0, at_least_zero);
   if (focus && !aperture) {
-    table.fail("focus", "stands without \"aperture\"", "depth of field needs both",
+    table.fail("focus", "is given without \"aperture\"", "depth of field needs both",
                "Add aperture = ... (m, diameter), or remove focus");
   }
   if (aperture.value_or(0.0) > 0.0 && !focus) {
-    table.fail("aperture", "stands without \"focus\"", "depth of field needs both",
+    table.fail("aperture", "is given without \"focus\"", "depth of field needs both",
                "Add focus = ... (m), or remove aperture");
   }
   camera.focus_m = focus.value_or(0.0);
@@ -81,7 +81,7 @@ void read_shutter(Camera& camera, const TableReader& table) {
   camera.line_s = table.number("line_s", shutter_s).value_or(0.0);
   camera.from_below = table.choice("row_order", row_orders).value_or("down") == "up";
   if (table.has("row_order") && !table.has("line_s")) {
-    table.fail("row_order", "stands without \"line_s\"",
+    table.fail("row_order", "is given without \"line_s\"",
                "it is the order in which a rolling shutter exposes the rows");
   }
 }
@@ -145,7 +145,7 @@ void read_intrinsics(Camera& camera, const TableReader& table) {
   if (!(fx > 0.0) && !(fy > 0.0)) {
     for (const char* key : {"cx", "cy", "pixel_origin"}) {
       if (table.has(key)) {
-        table.fail(key, "stands without \"fx\" and \"K\"", "it belongs to intrinsics in pixels");
+        table.fail(key, "is given without \"fx\" and \"K\"", "it belongs to intrinsics in pixels");
       }
     }
     return;

@@ -287,7 +287,7 @@ void add_file_lamps(Scene& scene, const std::string& object, const Mesh& mesh, s
     Lamp lamp = of_file.lamp;
     lamp.name = lamp.group = new_name(scene.lamps, object, lamp.name, "lamp");
     if (!lamp.is_distant()) lamp.position = placed(placement, lamp.position, where);
-    lamp.axis = placement.turned(lamp.axis);
+    lamp.axis = placement.rotated(lamp.axis);
     lamp.object = object;
     scene.lamps.push_back(std::move(lamp));
   }
@@ -298,11 +298,11 @@ void add_file_cameras(Scene& scene, const std::string& object, const Mesh& mesh,
   for (const MeshCamera& of_file : mesh.cameras) {
     if (!belongs(mesh, of_file.part_set, part)) continue;
     Camera camera = of_file.camera;
-    const Vec3 along = placement.turned(camera.look_at - camera.position);
+    const Vec3 along = placement.rotated(camera.look_at - camera.position);
     camera.name = new_name(scene.cameras, object, camera.name, "camera");
     camera.position = placed(placement, camera.position, where);
     camera.look_at = camera.position + placement.unit_m * along;
-    camera.up = placement.turned(camera.up);
+    camera.up = placement.rotated(camera.up);
     camera.where = where;
     camera.object = object;
     scene.cameras.push_back(std::move(camera));

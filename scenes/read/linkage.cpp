@@ -237,7 +237,7 @@ PoseTable read_poses(Scene& scene, const TableReader& table, double unit_m) {
             ++more_jumps;
           }
           before_deg = row_deg;
-          pose.turn = glm::quat_cast(rotation_xyz(row_deg));
+          pose.rotation = glm::quat_cast(rotation_xyz(row_deg));
         }
         if (!by_quaternion) return pose;
         const glm::dquat q(n[3], n[4], n[5], n[6]);
@@ -246,7 +246,7 @@ PoseTable read_poses(Scene& scene, const TableReader& table, double unit_m) {
                       fmt::format("the quaternion has length {:.6g}", glm::length(q)),
                       "a turn has length 1, within 1 %; qw is the scalar");
         }
-        pose.turn = glm::normalize(q);
+        pose.rotation = glm::normalize(q);
         return pose;
       });
   if (!first_jump.empty()) {
@@ -261,7 +261,7 @@ PoseTable read_poses(Scene& scene, const TableReader& table, double unit_m) {
 Visitor read_visitor(Scene& scene, const TableReader& table, double unit_m) {
   const Mission* mission = mission_of(scene);
   if (mission == nullptr) {
-    table.fail("trajectory", "stands without a trajectory of the scene",
+    table.fail("trajectory", "is given without a trajectory of the scene",
                "the other spacecraft is placed relative to it",
                "Write [orbit] with trajectory = \"FILE.oem\"");
   }
@@ -316,11 +316,11 @@ std::vector<std::string> names_of(const Linkage& linkage) {
 
 // The list of ancestors that comes back to the joint, "a, b, a"; "" where it ends.
 std::string circle_from(const Linkage& linkage, std::size_t joint) {
-  std::string way = linkage.joints[joint].name;
+  std::string chain = linkage.joints[joint].name;
   auto parent = linkage.joints[joint].parent;
   for (std::size_t steps = 0; parent && steps < linkage.joints.size(); ++steps) {
-    way += " on " + linkage.joints[*parent].name;
-    if (*parent == joint) return way;
+    chain += " on " + linkage.joints[*parent].name;
+    if (*parent == joint) return chain;
     parent = linkage.joints[*parent].parent;
   }
   return "";

@@ -100,9 +100,9 @@ std::uint32_t MaterialChoice::add_to_scene(std::uint32_t mesh_material) {
   std::uint32_t& number = shelved_.scene_material[mesh_material];
   if (number != no_index) return number;
   Material material = shelved_.mesh.materials[mesh_material];
-  if (mesh_material < shelved_.mesh.material_lacks.size()) {
-    for (const std::string& what : shelved_.mesh.material_lacks[mesh_material]) {
-      ++shelved_.mesh.lacking[what];
+  if (mesh_material < shelved_.mesh.unsupported_of_material.size()) {
+    for (const std::string& what : shelved_.mesh.unsupported_of_material[mesh_material]) {
+      ++shelved_.mesh.unsupported[what];
     }
   }
   // Material files do not respect the energy bound; a picture with extra energy is useless.

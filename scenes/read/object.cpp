@@ -36,7 +36,7 @@ void allow_keys(const TableReader& table, std::initializer_list<std::string_view
   table.allow_only(allowed, of_what);
 }
 
-constexpr Range turns_deg{0.25, 90.0};
+constexpr Range step_range_deg{0.25, 90.0};
 constexpr Range creases_deg{0.0, 180.0, true};
 
 // Number of segments, given directly or by the angle between two. faces_of: faces of a shape with
@@ -45,13 +45,13 @@ int read_segments(const TableReader& table, std::uint64_t (*faces_of)(std::uint6
   constexpr std::uint64_t bytes_per_face = 2 * sizeof(MeshPolygon) + 8 * sizeof(std::uint32_t) +
                                            2 * sizeof(Vec3);  // arrays grow by doubling
   const auto given = table.whole("segments", fewest_segments, most_segments);
-  const auto turn_deg = table.number("round_deg", turns_deg);
-  if (given && turn_deg) {
+  const auto step_deg = table.number("round_deg", step_range_deg);
+  if (given && step_deg) {
     table.fail("round_deg", "cannot be combined with \"segments\"", "a shape has one of the two");
   }
   const int segments =
       given ? *given
-            : static_cast<int>(std::ceil(360.0 / turn_deg.value_or(Rounding{}.turn_deg) - 1e-6));
+            : static_cast<int>(std::ceil(360.0 / step_deg.value_or(Rounding{}.step_deg) - 1e-6));
   base::check_room(faces_of(static_cast<std::uint64_t>(segments)) * bytes_per_face,
                    base::to_string(table.where()));
   return segments;
@@ -60,11 +60,11 @@ int read_segments(const TableReader& table, std::uint64_t (*faces_of)(std::uint6
 // Rounding options of a mesh.
 std::optional<Rounding> read_rounding(const TableReader& table) {
   const auto crease_deg = table.number("smooth_deg", creases_deg);
-  const auto turn_deg = table.number("round_deg", turns_deg);
-  if (!crease_deg && !turn_deg) return std::nullopt;
+  const auto step_deg = table.number("round_deg", step_range_deg);
+  if (!crease_deg && !step_deg) return std::nullopt;
   Rounding rounding;
   rounding.crease_deg = crease_deg;
-  rounding.turn_deg = turn_deg.value_or(rounding.turn_deg);
+  rounding.step_deg = step_deg.value_or(rounding.step_deg);
   return rounding;
 }
 
@@ -173,14 +173,14 @@ void take_axes(const TableReader& table, Mesh& mesh, Placement& placement) {
 
 void name_lacking(Mesh& mesh) {
   std::string list;
-  for (const auto& [what, count] : mesh.lacking) {
+  for (const auto& [what, count] : mesh.unsupported) {
     list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", what, count);
   }
   if (!list.empty()) {
     mesh.warnings.push_back(fmt::format("{}: not used, and the picture would change by it: {}",
                                         mesh.path.string(), list));
   }
-  mesh.lacking.clear();
+  mesh.unsupported.clear();
 }
 
 // Adds lamps and cameras of the mesh file to the scene, and lists contents that are not used.
@@ -197,7 +197,7 @@ void take_extras(Scene& scene, const TableReader& table, Mesh& mesh, std::uint32
   }
   const auto miss = [&](bool wanted, const char* what) {
     const auto found = mesh.unused.find(what);
-    if (wanted && found != mesh.unused.end()) mesh.lacking[what] = found->second;
+    if (wanted && found != mesh.unused.end()) mesh.unsupported[what] = found->second;
   };
   miss(lights, unknown_lamps_of_file);
   miss(cameras, flat_cameras_of_file);
@@ -253,7 +253,7 @@ Motion read_motion(const TableReader& table) {
 
 std::optional<Vec3> read_spin_about(const TableReader& table, double unit_m) {
   if (table.has("spin_about") && !table.has("spin")) {
-    table.fail("spin_about", "stands without \"spin\"", "it is the point about which spin turns");
+    table.fail("spin_about", "is given without \"spin\"", "it is the point about which spin turns");
   }
   return table.position("spin_about", unit_m);
 }

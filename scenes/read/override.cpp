@@ -141,7 +141,7 @@ bool is_zero(const TomlNode& value) {
   return items != nullptr && !items->empty() && std::all_of(items->begin(), items->end(), is_zero);
 }
 
-bool turns_lamps_off(std::string_view key, const TomlNode& value) {
+bool switches_lamps_off(std::string_view key, const TomlNode& value) {
   return among(key, strength_keys) && is_zero(value);
 }
 
@@ -160,7 +160,7 @@ void set_dark(TomlTable& light, const base::Location& where) {
 
 }  // namespace
 
-void turn_off(Scene& scene, const std::vector<LampOff>& off) {
+void switch_off(Scene& scene, const std::vector<LampOff>& off) {
   for (const LampOff& wanted : off) {
     const auto lamp = std::find_if(scene.lamps.begin(), scene.lamps.end(),
                                    [&](const Lamp& one) { return one.name == wanted.name; });
@@ -208,14 +208,15 @@ void apply_override(TomlNode& root, const std::string& setting,
                   fmt::format("keys of [[{0}]] are set as {0}.NAME.KEY=VALUE", head));
     }
     const std::string_view name = path.substr(first_dot + 1, last_dot - first_dot - 1);
-    const bool turns_off = head == "light" && turns_lamps_off(path.substr(last_dot + 1), value);
-    if (turns_off && meshes_have_lamps(table) && !is_entry(table, head, name)) {
+    const bool switches_off =
+        head == "light" && switches_lamps_off(path.substr(last_dot + 1), value);
+    if (switches_off && meshes_have_lamps(table) && !is_entry(table, head, name)) {
       off.push_back({std::string(name), where});
       return;
     }
     for (TomlTable* entry : entries_named(table, head, name, where)) {
       const std::string_view key = path.substr(last_dot + 1);
-      if (turns_off && find_entry(*entry, key) == nullptr) {
+      if (switches_off && find_entry(*entry, key) == nullptr) {
         set_dark(*entry, where);
       } else {
         set(*entry, key, value, where);

@@ -27,6 +27,6 @@ void apply_override(TomlNode& root, const std::string& setting,
 
 // Switches off lamps by name, when the scene is complete. Throws base::Error (Input) as
 // apply_override does for unknown names.
-void turn_off(Scene& scene, const std::vector<LampOff>& off);
+void switch_off(Scene& scene, const std::vector<LampOff>& off);
 
 }  // namespace earthshine::scenes

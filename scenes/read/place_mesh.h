@@ -33,7 +33,7 @@ struct Placement {
   [[nodiscard]] bool is_mirrored() const { return scale.x * scale.y * scale.z < 0.0; }
   [[nodiscard]] bool reverses() const { return inward != is_mirrored(); }
   // Of a direction of the file, unit.
-  [[nodiscard]] Vec3 turned(const Vec3& along) const {
+  [[nodiscard]] Vec3 rotated(const Vec3& along) const {
     return glm::normalize(rotation * (scale * (from_file * along)));
   }
 };

@@ -180,7 +180,7 @@ Scene scene_of(TomlNode tree, const std::filesystem::path& path,
     instances.know(scene.objects.back().name, placement);
     return scene.objects.back().name;
   });
-  turn_off(scene, off);
+  switch_off(scene, off);
   constexpr std::size_t mending_bytes = 56;  // per triangle, measured on spheres
   base::check_room(scene.triangles.size() * mending_bytes, path.string());
   FaceParts parts = mend_surfaces(scene, fronts);

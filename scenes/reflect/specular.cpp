@@ -37,17 +37,17 @@ SpecularStep specular_step(const Scene& scene, const Hit& hit, const Vec3& direc
   constexpr double drawn_in = 1e-5;
   const Triangle& triangle = scene.triangles[hit.triangle];
   const Vec3 normal = triangle_normal(scene, hit.triangle);
-  const Vec3 way = specular_direction(scene.materials[triangle.material], normal, direction);
-  if (aimed && goes_straight_on(direction, way)) {
+  const Vec3 onward = specular_direction(scene.materials[triangle.material], normal, direction);
+  if (aimed && goes_straight_on(direction, onward)) {
     const auto behind =
-        straight_through(scene, hit.triangle, hit_position(scene, hit), way, offset_m);
-    if (behind) return {*behind, way};
+        straight_through(scene, hit.triangle, hit_position(scene, hit), onward, offset_m);
+    if (behind) return {*behind, onward};
   }
-  const double side = glm::dot(way, normal) > 0.0 ? 1.0 : -1.0;
+  const double side = glm::dot(onward, normal) > 0.0 ? 1.0 : -1.0;
   Hit inner = hit;
   inner.u = (1.0 - drawn_in) * hit.u + drawn_in / 3.0;
   inner.v = (1.0 - drawn_in) * hit.v + drawn_in / 3.0;
-  return {hit_position(scene, inner) + normal * (side * offset_m), way};
+  return {hit_position(scene, inner) + normal * (side * offset_m), onward};
 }
 
 }  // namespace earthshine::scenes

@@ -22,22 +22,22 @@ double angle_deg(const Vec3& a, const Vec3& b) {
 
 // The inner Bezier point next to `from`, a third of the distance to `to`.
 Vec3 inner_point(const Vec3& from, const Vec3& to, const std::vector<Vec3>& normals) {
-  const Vec3 way = to - from;
+  const Vec3 offset = to - from;
   const auto alike = [&](const Vec3& normal) {
     return 1.0 - std::abs(glm::dot(normal, normals.front())) < same_normal;
   };
-  Vec3 along = way;
+  Vec3 along = offset;
   if (std::all_of(normals.begin(), normals.end(), alike)) {
-    along = way - glm::dot(way, normals.front()) * normals.front();
+    along = offset - glm::dot(offset, normals.front()) * normals.front();
   } else if (normals.size() == 2) {  // a crease follows both of its faces
     const Vec3 crease = glm::normalize(glm::cross(normals[0], normals[1]));
-    along = glm::dot(way, crease) * crease;
+    along = glm::dot(offset, crease) * crease;
   }
-  const double chord = glm::length(way), tangent = glm::length(along);
-  const double cosine = chord * tangent > 0.0 ? glm::dot(way, along) / (chord * tangent) : 0.0;
+  const double chord = glm::length(offset), tangent = glm::length(along);
+  const double cosine = chord * tangent > 0.0 ? glm::dot(offset, along) / (chord * tangent) : 0.0;
   // A curve nearly perpendicular to its edge is rejected. The length suits an arc at the angle phi
   // to its chord: (4/3) tan(phi/2) radii, where the chord is 2 sin(phi) radii.
-  if (cosine < least_cosine) return from + way / 3.0;
+  if (cosine < least_cosine) return from + offset / 3.0;
   return from + along * (2.0 / 3.0 * chord / (tangent * (1.0 + cosine)));
 }
 
@@ -96,7 +96,7 @@ std::uint32_t EdgeCurves::add(std::uint32_t a, std::uint32_t b, const Vec3& norm
   return number;
 }
 
-void EdgeCurves::find(const std::vector<Vec3>& place, double turn_deg) {
+void EdgeCurves::find(const std::vector<Vec3>& place, double step_deg) {
   std::sort(uses_.begin(), uses_.end(), [](const Use& a, const Use& b) {
     return std::tie(a.low, a.high, a.number) < std::tie(b.low, b.high, b.number);
   });
@@ -108,27 +108,27 @@ void EdgeCurves::find(const std::vector<Vec3>& place, double turn_deg) {
          ++end) {
       of_use_[uses_[end].number] = static_cast<std::uint32_t>(curves_.size());
     }
-    curves_.push_back(curve_of({&uses_[begin], end - begin}, place, turn_deg));
+    curves_.push_back(curve_of({&uses_[begin], end - begin}, place, step_deg));
   }
   base::release(uses_);
 }
 
 // Curve of one edge.
 EdgeCurve EdgeCurves::curve_of(std::span<const Use> uses, const std::vector<Vec3>& place,
-                               double turn_deg) {
+                               double step_deg) {
   std::vector<Vec3> low, high;
-  double turn = 0.0;
+  double angle = 0.0;
   for (const Use& use : uses) {
     low.push_back(use.at_low);
     high.push_back(use.at_high);
-    turn = std::max(turn, angle_deg(use.at_low, use.at_high));
+    angle = std::max(angle, angle_deg(use.at_low, use.at_high));
   }
   EdgeCurve curve;
   const Vec3 &a = place[uses.front().low], &b = place[uses.front().high];
   curve.points = {a, inner_point(a, b, low), inner_point(b, a, high), b};
-  turn = std::max(turn, angle_deg(curve.points[1] - a, b - curve.points[2]));
-  if (turn > flat_deg) {
-    curve.pieces = std::clamp(static_cast<std::uint32_t>(std::ceil(turn / turn_deg - 1e-6)),
+  angle = std::max(angle, angle_deg(curve.points[1] - a, b - curve.points[2]));
+  if (angle > flat_deg) {
+    curve.pieces = std::clamp(static_cast<std::uint32_t>(std::ceil(angle / step_deg - 1e-6)),
                               std::uint32_t{1}, most_pieces);
   }
   return curve;

@@ -35,8 +35,8 @@ class EdgeCurves {
   // tangent plane of the faces' common normal (Vlachos, Peters, Boyd and Mitchell, "Curved PN
   // triangles", 2001), or along the crease of two normals, with the length for an arc (Goldapp,
   // "Approximation of circular arcs by cubic polynomials", 1991). It is divided so that no segment
-  // turns by more than turn_deg. place: position for each id.
-  void find(const std::vector<Vec3>& place, double turn_deg);
+  // turns by more than step_deg. place: position for each id.
+  void find(const std::vector<Vec3>& place, double step_deg);
 
   [[nodiscard]] EdgeCurve& of_use(std::uint32_t use) { return curves_[of_use_[use]]; }
 
@@ -46,7 +46,7 @@ class EdgeCurves {
     Vec3 at_low, at_high;  // normals
   };
   [[nodiscard]] static EdgeCurve curve_of(std::span<const Use> uses, const std::vector<Vec3>& place,
-                                          double turn_deg);
+                                          double step_deg);
 
   std::vector<Use> uses_;
   std::vector<std::uint32_t> of_use_;  // into curves_

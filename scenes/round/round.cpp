@@ -46,7 +46,7 @@ class Rounder {
     }
     std::vector<Vec3> place(mesh.vertices.size());
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) place[ids_[v]] = mesh.vertices[v];
-    curves_.find(place, rounding.turn_deg);
+    curves_.find(place, rounding.step_deg);
   }
 
   Mesh make() {

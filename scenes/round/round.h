@@ -11,7 +11,7 @@ namespace earthshine::scenes {
 
 struct Rounding {
   std::optional<double> crease_deg;  // for corners without a normal in the file: see edge_curves.h
-  double turn_deg = 11.25;           // between neighbouring new faces along an edge
+  double step_deg = 11.25;           // between neighbouring new faces along an edge
 };
 
 // Polygons with a curved edge become triangles on cubic patches (curved PN triangles) that meet

@@ -18,7 +18,7 @@ constexpr int directions = 16;
 
 void add_airglow_lamps(Scene& scene, const Rgb& radiance, const base::Location& where) {
   if (!scene.earth) {
-    throw base::Error(base::Blame::Input, where, "[airglow] stands without an Earth",
+    throw base::Error(base::Blame::Input, where, "[airglow] needs an Earth",
                       "airglow is the light of the Earth's night side", "Write [earth] or [orbit]");
   }
   if (std::any_of(scene.lamps.begin(), scene.lamps.end(),
@@ -38,12 +38,12 @@ void add_airglow_lamps(Scene& scene, const Rgb& radiance, const base::Location& 
     // A spiral of equal solid angles; the turn is the golden section's.
     const double height = 1.0 - (1.0 - lowest) * (k + 0.5) / directions;
     const double radius = std::sqrt(1.0 - height * height);
-    const double turn = 2.0 * base::pi * k / std::numbers::phi;
+    const double azimuth = 2.0 * base::pi * k / std::numbers::phi;
     Lamp lamp;
     lamp.name = fmt::format("airglow-{}", k + 1);
     lamp.group = airglow_group;
     lamp.kind = LampKind::Distant;
-    lamp.axis = -frame.to_world({radius * std::cos(turn), radius * std::sin(turn), height});
+    lamp.axis = -frame.to_world({radius * std::cos(azimuth), radius * std::sin(azimuth), height});
     if (!is_off) lamp.illuminance_lx = each;
     scene.lamps.push_back(std::move(lamp));
   }

@@ -89,7 +89,7 @@ class AttitudeReader {
     if (by_quaternion_ && (has(Yaw) || has(Pitch) || has(Roll))) {
       throw Error(Blame::Input, where, "both a quaternion and angles are there", wanted_columns);
     }
-    for (const Column column : turn_columns()) {
+    for (const Column column : rotation_columns()) {
       if (has(column)) continue;
       throw Error(Blame::Input, where, fmt::format("there is no column {}", kinds[column].name),
                   wanted_columns);
@@ -125,8 +125,8 @@ class AttitudeReader {
     }
     rows_.push_back({{value[Yaw], value[Pitch], value[Roll]}, fields[0].where.line});
     table_.at.push_back(at);
-    table_.turns.push_back(by_quaternion_ ? quaternion(value, fields[0].where.line)
-                                          : turn_by_angles(value));
+    table_.rotations.push_back(by_quaternion_ ? quaternion(value, fields[0].where.line)
+                                              : rotation_by_angles(value));
   }
 
   [[nodiscard]] glm::dquat quaternion(const std::array<double, ColumnCount>& value,
@@ -141,7 +141,7 @@ class AttitudeReader {
     return q / length;
   }
 
-  static glm::dquat turn_by_angles(const std::array<double, ColumnCount>& value) {
+  static glm::dquat rotation_by_angles(const std::array<double, ColumnCount>& value) {
     const auto about = [](const Vec3& axis, double angle_deg) {
       return glm::angleAxis(base::radians(angle_deg), axis);
     };
@@ -156,8 +156,8 @@ class AttitudeReader {
   };
 
   // Rotation angle from one row to the next, by the shorter way, deg.
-  [[nodiscard]] double turn_deg(std::size_t row) const {
-    const double cosine = std::abs(glm::dot(table_.turns[row], table_.turns[row + 1]));
+  [[nodiscard]] double rotation_deg(std::size_t row) const {
+    const double cosine = std::abs(glm::dot(table_.rotations[row], table_.rotations[row + 1]));
     return 2.0 * base::degrees(std::acos(std::min(cosine, 1.0)));
   }
 
@@ -186,7 +186,7 @@ class AttitudeReader {
   // Yaw and roll both jump where the nose passes the zenith, although the rotation is small.
   [[nodiscard]] bool passes_zenith(std::size_t row) const {
     const auto over = [](double step) { return std::abs(step) >= 90.0 && std::abs(step) <= 270.0; };
-    return turn_deg(row) < 90.0 && over(step_deg(row, 0)) && over(step_deg(row, 2));
+    return rotation_deg(row) < 90.0 && over(step_deg(row, 0)) && over(step_deg(row, 2));
   }
 
   // The angle with a step of half a turn or more; if none, the number of angles.
@@ -203,7 +203,7 @@ class AttitudeReader {
     std::size_t first = 0, count = 0;
     for (std::size_t row = 0; row + 1 < rows_.size(); ++row) {
       const bool wide =
-          turn_deg(row) > 180.0 - same_deg || (!by_quaternion_ && wide_angle(row) < 3);
+          rotation_deg(row) > 180.0 - same_deg || (!by_quaternion_ && wide_angle(row) < 3);
       if (wide && count++ == 0) first = row;
     }
     if (count == 0) return;
@@ -212,15 +212,15 @@ class AttitudeReader {
         angle < 3 ? fmt::format("{} goes from {:g} to {:g}", kinds[Yaw + angle].name,
                                 rows_[first].angle_deg[angle], rows_[first + 1].angle_deg[angle])
                   : "they are half a turn apart";
-    const double taken = turn_deg(first);
-    const std::string way = taken < same_deg ? "none at all"
-                            : taken > 180.0 - same_deg
-                                ? "either way round"
-                                : fmt::format("the shorter one, of {:.4g} deg", taken);
+    const double taken = rotation_deg(first);
+    const std::string taken_text = taken < same_deg ? "none at all"
+                                   : taken > 180.0 - same_deg
+                                       ? "either way round"
+                                       : fmt::format("the shorter one, of {:.4g} deg", taken);
     warnings.push_back(fmt::format(
         "{}: lines {} and {}: {}, and the turn that is taken between rows is {}{}; give rows less "
         "than 180 deg apart, as every 120 deg",
-        table_.file, rows_[first].line, rows_[first + 1].line, step, way,
+        table_.file, rows_[first].line, rows_[first + 1].line, step, taken_text,
         count > 1 ? fmt::format(" ({} more such)", count - 1) : std::string()));
   }
 
@@ -228,7 +228,7 @@ class AttitudeReader {
     return std::find(columns_.begin(), columns_.end(), column) != columns_.end();
   }
 
-  [[nodiscard]] std::vector<Column> turn_columns() const {
+  [[nodiscard]] std::vector<Column> rotation_columns() const {
     return by_quaternion_ ? std::vector{Qw, Qx, Qy, Qz} : std::vector{Yaw, Pitch, Roll};
   }
 

@@ -29,8 +29,8 @@ Vec3 carried(const Vec3& d, double from_deg, double to_deg) {
   return {cosine * d.x - sine * d.z, d.y, sine * d.x + cosine * d.z};
 }
 
-glm::dquat turn_at(const AttitudeTable& table, double at, double position_deg) {
-  if (table.at.size() == 1) return table.turns[0];
+glm::dquat rotation_at(const AttitudeTable& table, double at, double position_deg) {
+  if (table.at.size() == 1) return table.rotations[0];
   if (!(at >= table.at.front() && at <= table.at.back())) {
     const char* const column = table.by_time ? "time_s" : "position_deg";
     throw base::Error(
@@ -44,14 +44,14 @@ glm::dquat turn_at(const AttitudeTable& table, double at, double position_deg) {
   const auto after = std::upper_bound(table.at.begin() + 1, table.at.end() - 1, at);
   const auto row = static_cast<std::size_t>(after - table.at.begin());
   const double share = (at - table.at[row - 1]) / (table.at[row] - table.at[row - 1]);
-  return glm::normalize(glm::slerp(table.turns[row - 1], table.turns[row], share));
+  return glm::normalize(glm::slerp(table.rotations[row - 1], table.rotations[row], share));
 }
 
 // An attitude rotates the axes (nose, starboard, belly) from (velocity, -normal, -zenith) to their
 // directions.
-BodyAxes turned_axes(const glm::dquat& turn) {
-  const auto local = [&turn](const Vec3& d) {
-    const Vec3 there = turn * d;
+BodyAxes rotated_axes(const glm::dquat& rotation) {
+  const auto local = [&rotation](const Vec3& d) {
+    const Vec3 there = rotation * d;
     return Vec3(there.x, -there.y, -there.z);
   };
   return {-local({1.0, 0.0, 0.0}), -local({0.0, 0.0, 1.0})};
@@ -60,7 +60,7 @@ BodyAxes turned_axes(const glm::dquat& turn) {
 BodyAxes axes_at(const Orbit& orbit, double position_deg, double time_s) {
   if (orbit.files && orbit.files->attitudes) {
     const AttitudeTable& table = *orbit.files->attitudes;
-    return turned_axes(turn_at(table, table.by_time ? time_s : position_deg, position_deg));
+    return rotated_axes(rotation_at(table, table.by_time ? time_s : position_deg, position_deg));
   }
   if (orbit.attitude == inertial_attitude) {
     const double from = orbit.inertial_at_deg;

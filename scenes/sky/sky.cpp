@@ -134,10 +134,10 @@ Vec3 SunDirections::beside_earth(double u, double v) const {
   }
   const double off = 0.5 * (low + high);
   const double covered = covered_half_arc(off, partly_->limb, partly_->separation);
-  const double turn = covered + 2.0 * v * (base::pi - covered);
-  return glm::normalize(
-      std::cos(off) * sun_ +
-      std::sin(off) * (std::cos(turn) * toward_ + std::sin(turn) * glm::cross(sun_, toward_)));
+  const double azimuth = covered + 2.0 * v * (base::pi - covered);
+  return glm::normalize(std::cos(off) * sun_ +
+                        std::sin(off) * (std::cos(azimuth) * toward_ +
+                                         std::sin(azimuth) * glm::cross(sun_, toward_)));
 }
 
 Rgb sun_sample_illuminance(const Scene& scene) {

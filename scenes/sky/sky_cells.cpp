@@ -39,11 +39,12 @@ std::size_t SkyCells::cell_of(const Vec3& direction) const {
   std::size_t ring = 0;
   while (ring + 1 < sectors_.size() && cosine < least_cosine_[ring]) ++ring;
   if (sectors_[ring] == 1) return first_[ring];
-  const double turns =
+  const double circle_share =
       std::atan2(glm::dot(direction, frame_.bitangent), glm::dot(direction, frame_.tangent)) /
       (2.0 * pi);
   const auto count = static_cast<double>(sectors_[ring]);
-  const auto sector = static_cast<std::size_t>((turns < 0.0 ? turns + 1.0 : turns) * count);
+  const auto sector =
+      static_cast<std::size_t>((circle_share < 0.0 ? circle_share + 1.0 : circle_share) * count);
   return first_[ring] + std::min(sector, sectors_[ring] - 1);
 }
 

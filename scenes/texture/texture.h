@@ -54,9 +54,9 @@ class Texture {
 
 // Maps (u, v) of the vertices to (u, v) of the texture.
 struct TextureTransform {
-  glm::dmat2 turn{1.0};
+  glm::dmat2 matrix{1.0};
   glm::dvec2 shift{0.0};
-  [[nodiscard]] glm::dvec2 apply(const glm::dvec2& uv) const { return turn * uv + shift; }
+  [[nodiscard]] glm::dvec2 apply(const glm::dvec2& uv) const { return matrix * uv + shift; }
 };
 
 // Textures of mesh files. A picture that cannot be read leaves the plain colour and gives a

@@ -273,12 +273,12 @@ glm::dmat3 to_gcrs(Frame frame, Instant t, EarthClock clock) {
 }
 
 State to_gcrs(const State& state, Frame frame, Instant t, EarthClock clock) {
-  const glm::dmat3 turn = to_gcrs(frame, t, clock);
+  const glm::dmat3 rotation = to_gcrs(frame, t, clock);
   Vec3 velocity = state.velocity_m_s;
   if (frame == Frame::Itrf) {
     velocity += glm::cross(Vec3(0.0, 0.0, earth_rate_rad_s), state.position_m);
   }
-  return {turn * state.position_m, turn * velocity};
+  return {rotation * state.position_m, rotation * velocity};
 }
 
 Vec3 sun_direction(Instant t) {

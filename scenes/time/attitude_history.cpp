@@ -41,7 +41,7 @@ glm::dquat about(int axis, double angle_deg) {
   return glm::angleAxis(base::radians(angle_deg), unit);
 }
 
-glm::dquat spin_turn(const glm::dvec4& spin) {
+glm::dquat spin_rotation(const glm::dvec4& spin) {
   return about(2, 90.0 + spin[0]) * about(0, 90.0 - spin[1]) * about(2, spin[2]);
 }
 
@@ -50,8 +50,8 @@ bool is_body(const std::string& name) {
   return lower.starts_with("sc_body") || lower.starts_with("spacecraft_body");
 }
 
-double turn_between_deg(const AttitudeSegment& segment, std::size_t a, std::size_t b) {
-  const double cosine = std::abs(glm::dot(segment.turns[a], segment.turns[b]));
+double rotation_between_deg(const AttitudeSegment& segment, std::size_t a, std::size_t b) {
+  const double cosine = std::abs(glm::dot(segment.rotations[a], segment.rotations[b]));
   return 2.0 * base::degrees(std::acos(std::min(cosine, 1.0)));
 }
 
@@ -128,13 +128,13 @@ class AemReader {
     made_.body_name = body_is_a ? a.value : b.value;
     Rows rows;
     bool backward = false;
-    if (const CcsdsLine* way = meta.find("ATTITUDE_DIR")) {
-      if (way->value != "A2B" && way->value != "B2A") {
-        throw Error(Blame::Input, way->where,
-                    fmt::format("ATTITUDE_DIR is {}", in_quotes(way->value)),
+    if (const CcsdsLine* sense = meta.find("ATTITUDE_DIR")) {
+      if (sense->value != "A2B" && sense->value != "B2A") {
+        throw Error(Blame::Input, sense->where,
+                    fmt::format("ATTITUDE_DIR is {}", in_quotes(sense->value)),
                     "allowed are A2B and B2A");
       }
-      backward = way->value == "B2A";
+      backward = sense->value == "B2A";
     } else if (message_.version == "1.0" || message_.mjd) {
       (void)meta.required("ATTITUDE_DIR");
     }
@@ -212,7 +212,7 @@ class AemReader {
       const CcsdsRow row = row_of(message_.lines[k], meta.time_system(), rows);
       for (const auto place : {ScalarPlace::First, ScalarPlace::Last}) {
         rows.scalar = place;
-        const Vec3 z = turn_of(row.numbers, rows, message_.lines[k]) * Vec3(0.0, 0.0, 1.0);
+        const Vec3 z = rotation_of(row.numbers, rows, message_.lines[k]) * Vec3(0.0, 0.0, 1.0);
         both += fmt::format("{}scalar {}: z at ({:.3f}, {:.3f}, {:.3f})", both.empty() ? "" : "; ",
                             place == ScalarPlace::First ? "first" : "last", z.x, z.y, z.z);
       }
@@ -234,12 +234,12 @@ class AemReader {
     return read_row(line, message_.mjd, system, made_.clock, allowed[kind], wanted[kind]);
   }
 
-  [[nodiscard]] static glm::dquat turn_of(const std::vector<double>& n, const Rows& rows,
-                                          const CcsdsLine& line) {
+  [[nodiscard]] static glm::dquat rotation_of(const std::vector<double>& n, const Rows& rows,
+                                              const CcsdsLine& line) {
     if (rows.kind == Kind::Euler) {
       return about(rows.axis[0], n[0]) * about(rows.axis[1], n[1]) * about(rows.axis[2], n[2]);
     }
-    if (rows.kind == Kind::Spin) return spin_turn({n[0], n[1], n[2], n[3]});
+    if (rows.kind == Kind::Spin) return spin_rotation({n[0], n[1], n[2], n[3]});
     const glm::dquat q = rows.scalar == ScalarPlace::First ? glm::dquat(n[0], n[1], n[2], n[3])
                                                            : glm::dquat(n[3], n[0], n[1], n[2]);
     const double length = glm::length(q);
@@ -273,10 +273,10 @@ class AemReader {
                     "time rises from row to row");
       }
       const auto& n = row.numbers;
-      const glm::dquat turn = turn_of(n, rows, line);
+      const glm::dquat rotation = rotation_of(n, rows, line);
       segment.at.push_back(row.at);
       segment.lines.push_back(line.where.line);
-      segment.turns.push_back(rows.body_is_a ? glm::conjugate(turn) : turn);
+      segment.rotations.push_back(rows.body_is_a ? glm::conjugate(rotation) : rotation);
       if (rows.kind == Kind::Spin) segment.spin.emplace_back(n[0], n[1], n[2], n[3]);
     }
     if (open != nullptr) fail_cut_off(*open, "DATA_STOP");
@@ -307,18 +307,21 @@ class AemReader {
   void name_jumps(std::vector<std::string>& warnings) const {
     for (const AttitudeSegment& segment : made_.segments) {
       if (!segment.spin.empty()) continue;
-      const auto turn_deg = [&](std::size_t k) { return turn_between_deg(segment, k, k + 1); };
-      for (std::size_t k = 0; k + 1 < segment.turns.size(); ++k) {
-        const double turn = turn_deg(k);
-        const double before = k > 0 ? turn_deg(k - 1) : 0.0;
-        const double after = k + 2 < segment.turns.size() ? turn_deg(k + 1) : 0.0;
-        const bool single = k + 2 < segment.turns.size() && turn >= jump_ratio * before &&
-                            turn >= single_ratio * turn_between_deg(segment, k, k + 2);
-        if (turn < jump_deg || !(single || turn >= jump_ratio * std::max(before, after))) continue;
+      const auto rotation_deg = [&](std::size_t k) {
+        return rotation_between_deg(segment, k, k + 1);
+      };
+      for (std::size_t k = 0; k + 1 < segment.rotations.size(); ++k) {
+        const double rotation = rotation_deg(k);
+        const double before = k > 0 ? rotation_deg(k - 1) : 0.0;
+        const double after = k + 2 < segment.rotations.size() ? rotation_deg(k + 1) : 0.0;
+        const bool single = k + 2 < segment.rotations.size() && rotation >= jump_ratio * before &&
+                            rotation >= single_ratio * rotation_between_deg(segment, k, k + 2);
+        if (rotation < jump_deg || !(single || rotation >= jump_ratio * std::max(before, after)))
+          continue;
         warnings.push_back(fmt::format(
             "{}: the attitude jumps by {:.4g} deg from {} to {}; is the scalar of each quaternion "
             "where the file says?",
-            made_.file, turn, utc_text(segment.at[k]), utc_text(segment.at[k + 1])));
+            made_.file, rotation, utc_text(segment.at[k]), utc_text(segment.at[k + 1])));
         return;
       }
     }
@@ -333,7 +336,7 @@ class AemReader {
 
 // Whether the body, or the axis of its spin, has one attitude from row to row.
 bool is_held(const AttitudeSegment& segment, std::size_t before) {
-  if (segment.spin.empty()) return turn_between_deg(segment, before, before + 1) < same_deg;
+  if (segment.spin.empty()) return rotation_between_deg(segment, before, before + 1) < same_deg;
   const glm::dvec4 &from = segment.spin[before], &to = segment.spin[before + 1];
   return std::abs(std::remainder(to[0] - from[0], 360.0)) < same_deg &&
          std::abs(to[1] - from[1]) < same_deg;
@@ -343,17 +346,18 @@ glm::dquat between(const AttitudeSegment& segment, std::size_t before, Instant t
   const double span_s = segment.at[before + 1] - segment.at[before];
   const double share = (t - segment.at[before]) / span_s;
   if (segment.spin.empty()) {
-    return glm::normalize(glm::slerp(segment.turns[before], segment.turns[before + 1], share));
+    return glm::normalize(
+        glm::slerp(segment.rotations[before], segment.rotations[before + 1], share));
   }
   // The rate determines the full revolutions between rows.
   const glm::dvec4 &from = segment.spin[before], &to = segment.spin[before + 1];
   const double expected = 0.5 * (from[3] + to[3]) * span_s;
   const double gone = expected + std::remainder(to[2] - from[2] - expected, 360.0);
   const double ascension = std::remainder(to[0] - from[0], 360.0);
-  const glm::dquat turn =
-      spin_turn({from[0] + share * ascension, from[1] + share * (to[1] - from[1]),
-                 from[2] + share * gone, from[3]});
-  return segment.body_is_a ? glm::conjugate(turn) : turn;
+  const glm::dquat rotation =
+      spin_rotation({from[0] + share * ascension, from[1] + share * (to[1] - from[1]),
+                     from[2] + share * gone, from[3]});
+  return segment.body_is_a ? glm::conjugate(rotation) : rotation;
 }
 
 }  // namespace
@@ -373,7 +377,7 @@ glm::dquat AttitudeHistory::at(Instant t, double longest_gap_s) const {
   }
   const auto upper = std::upper_bound(found->at.begin(), found->at.end(), t);
   const auto after = static_cast<std::size_t>(upper - found->at.begin());
-  glm::dquat turn = found->turns.front();
+  glm::dquat rotation = found->rotations.front();
   if (found->at.size() > 1) {
     const std::size_t before = std::min(after > 0 ? after - 1 : 0, found->at.size() - 2);
     if (t > found->at[before] && t < found->at[before + 1] &&
@@ -381,9 +385,9 @@ glm::dquat AttitudeHistory::at(Instant t, double longest_gap_s) const {
       fail_gap({file, found->lines[before + 1], 0}, found->at[before], found->at[before + 1],
                "Give rows more often, begin a new segment, or give both rows the same attitude");
     }
-    turn = between(*found, before, t);
+    rotation = between(*found, before, t);
   }
-  return glm::normalize(glm::quat_cast(to_gcrs(found->frame, t, clock)) * turn);
+  return glm::normalize(glm::quat_cast(to_gcrs(found->frame, t, clock)) * rotation);
 }
 
 AttitudeHistory read_attitude_history(const std::filesystem::path& path, EarthClock clock,

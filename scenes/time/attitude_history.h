@@ -26,9 +26,9 @@ enum class ScalarPlace { First, Last };
 struct AttitudeSegment {
   Frame frame = Frame::Gcrf;
   Instant first_useful, last_useful;
-  std::vector<Instant> at;        // ascending
-  std::vector<glm::dquat> turns;  // v_frame = q v_body q*
-  std::vector<int> lines;         // of the rows
+  std::vector<Instant> at;            // ascending
+  std::vector<glm::dquat> rotations;  // v_frame = q v_body q*
+  std::vector<int> lines;             // of the rows
   // For spin, deg and deg/s: right ascension, declination, spin angle, rate. Else empty.
   std::vector<glm::dvec4> spin;
   bool body_is_a = false;  // } for spin: direction of its angles

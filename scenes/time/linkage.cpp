@@ -46,9 +46,9 @@ double angle_at(const AngleTable& table, Instant t) {
 Pose pose_at(const PoseTable& table, Instant t) {
   const auto [row, share] = place_in(table, t);
   const TablePose& from = table.values[row];
-  if (share == 0.0) return {glm::mat3_cast(from.turn), from.offset_m};
+  if (share == 0.0) return {glm::mat3_cast(from.rotation), from.offset_m};
   const TablePose& to = table.values[row + 1];
-  return {glm::mat3_cast(glm::slerp(from.turn, to.turn, share)),
+  return {glm::mat3_cast(glm::slerp(from.rotation, to.rotation, share)),
           from.offset_m + share * (to.offset_m - from.offset_m)};
 }
 
@@ -66,7 +66,7 @@ Pose pose_at(const Visitor& visitor, const Mission& mission, Instant t) {
 
 }  // namespace
 
-Pose turn_about(const Vec3& pivot_m, const Vec3& axis, double angle_deg) {
+Pose rotation_about(const Vec3& pivot_m, const Vec3& axis, double angle_deg) {
   const glm::dmat3 rotation = glm::mat3_cast(glm::angleAxis(base::radians(angle_deg), axis));
   return {rotation, pivot_m - rotation * pivot_m};
 }
@@ -85,8 +85,8 @@ double SunFollower::angle_deg(const Vec3& axis, const Vec3& sun) const {
   // The cosine falls with the angle's distance from the best one, to the nearer limit.
   double found = lowest_deg;
   double off = std::numeric_limits<double>::infinity();
-  for (int turn = -2; turn <= 2; ++turn) {
-    const double angle = std::clamp(best + 360.0 * turn, lowest_deg, highest_deg);
+  for (int rotation = -2; rotation <= 2; ++rotation) {
+    const double angle = std::clamp(best + 360.0 * rotation, lowest_deg, highest_deg);
     const double distance = std::abs(std::remainder(angle - best, 360.0));
     // Of equal angles the one nearest to 0.
     const bool nearer = distance < off - 1e-9;
@@ -124,7 +124,7 @@ std::vector<JointState> Linkage::at(const Mission* mission, Instant t, const Vec
       }
       // Exactly nothing where nothing turns.
       if (*state.angle_deg != 0.0)
-        state.pose = turn_about(joint.pivot_m, joint.axis, *state.angle_deg);
+        state.pose = rotation_about(joint.pivot_m, joint.axis, *state.angle_deg);
     }
     found[k] = state;
     if (joint.parent) found[k].pose = parent * state.pose;

@@ -39,7 +39,7 @@ struct Pose {
   return {back, -(back * pose.offset_m)};
 }
 // By the right-hand rule; axis: unit.
-[[nodiscard]] Pose turn_about(const Vec3& pivot_m, const Vec3& axis, double angle_deg);
+[[nodiscard]] Pose rotation_about(const Vec3& pivot_m, const Vec3& axis, double angle_deg);
 
 // Rows of a file against time. Angles and positions between rows are linear, turns even (slerp,
 // the shorter way).
@@ -53,7 +53,7 @@ struct MotionTable {
 using AngleTable = MotionTable<double>;  // deg
 struct TablePose {
   Vec3 offset_m{0.0};
-  glm::dquat turn{1.0, 0.0, 0.0, 0.0};
+  glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
 };
 using PoseTable = MotionTable<TablePose>;
 

@@ -158,12 +158,13 @@ std::array<double, 2> motion_of(const scenes::Scene& scene, const raytrace::Came
   if (!model.projection.is_before(model.to_camera(middle))) return {0.0, 0.0};
   const Vec3 about = scenes::spin_centre(scene, record);
   // A central difference over a time in which it moves by a millionth of its distance.
-  const double turn = base::radians(glm::length(record.motion.spin_deg_s)) *
-                          glm::length(middle - about) / glm::length(middle - model.position) +
-                      base::radians(glm::length(model.motion.spin_deg_s));
+  const double rotation_rad = base::radians(glm::length(record.motion.spin_deg_s)) *
+                                  glm::length(middle - about) /
+                                  glm::length(middle - model.position) +
+                              base::radians(glm::length(model.motion.spin_deg_s));
   const double speed = glm::length(record.motion.velocity_m_s - model.motion.velocity_m_s) /
                            glm::length(middle - model.position) +
-                       turn;
+                       rotation_rad;
   if (!(speed > 0.0)) return {0.0, 0.0};
   const double dt = 1e-6 / speed;
   const auto film = [&](double t_s) {

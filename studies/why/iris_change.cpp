@@ -198,10 +198,10 @@ BrightThings bright_changes(const WhyNotInputs& in, std::size_t index, const Gon
                                 exposure_without(*in.cctv, luminance, pixels, in.plan.map));
   }
   const bool sun = gone.size() == 1 && gone.front()->is_sun;
-  const std::string stands = sun ? "the Sun stands in the picture: " : "";
+  const std::string in_view = sun ? "the Sun is in the picture: " : "";
   const std::string closed =
-      stands + (sun ? fmt::format("iris closed by {:.1f} stops", found.stops)
-                    : fmt::format("iris closed by {:.1f} stops for {}", found.stops, found.names));
+      in_view + (sun ? fmt::format("iris closed by {:.1f} stops", found.stops)
+                     : fmt::format("iris closed by {:.1f} stops for {}", found.stops, found.names));
   const bool closes = by_iris && found.stops >= least_stops, stray = strays(in, gone, own);
   // The target's surround remains, except for the Sun, which is no surface.
   const std::vector<std::uint32_t> keep =
@@ -227,7 +227,7 @@ BrightThings bright_changes(const WhyNotInputs& in, std::size_t index, const Gon
   if (closes) add(Cause::Iris, closed, true, false);
   if (stray) {
     add(Cause::Glare,
-        sun ? stands + (in.cctv ? "its stray light" : "the eye is dazzled") : veil + found.names,
+        sun ? in_view + (in.cctv ? "its stray light" : "the eye is dazzled") : veil + found.names,
         false, true);
   }
   if (closes && stray) add(Cause::Iris, closed + ", and its stray light", true, true);

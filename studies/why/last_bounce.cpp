@@ -57,7 +57,7 @@ LastBounce LastBounces::of(std::span<const SeenPoint> points, int rays) const {
       light.straight[group] += own;
     }
   }
-  for (auto& [object, by_group] : found) light.by_way.push_back({object, std::move(by_group)});
+  for (auto& [object, by_group] : found) light.reflectors.push_back({object, std::move(by_group)});
   return light;
 }
 
@@ -74,12 +74,12 @@ void LightShares::add(const LastBounce& light, std::span<const Rgb> weight) {
   for (std::size_t g = 0; g < light.straight.size(); ++g) {
     add(groups_.names[g], false, base::luminance(weight_of(weight, g) * light.straight[g]));
   }
-  for (const LastBounce::ByWayOf& way : light.by_way) {
+  for (const LastBounce::Reflector& reflector : light.reflectors) {
     double luminance = 0.0;
-    for (std::size_t g = 0; g < way.by_group.size(); ++g) {
-      luminance += base::luminance(weight_of(weight, g) * way.by_group[g]);
+    for (std::size_t g = 0; g < reflector.by_group.size(); ++g) {
+      luminance += base::luminance(weight_of(weight, g) * reflector.by_group[g]);
     }
-    add(scene_.objects[way.object].name, true, luminance);
+    add(scene_.objects[reflector.object].name, true, luminance);
   }
 }
 

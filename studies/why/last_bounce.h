@@ -21,11 +21,11 @@ namespace earthshine::studies {
 
 // Mean light by rays over some points, cd/m^2 by light group.
 struct LastBounce {
-  struct ByWayOf {
+  struct Reflector {
     std::uint32_t object = 0;
     std::vector<Rgb> by_group;
   };
-  std::vector<ByWayOf> by_way;
+  std::vector<Reflector> reflectors;
   std::vector<Rgb> straight;  // from emitters without shadow rays (emitter_is_explicit)
 };
 

@@ -27,11 +27,11 @@ Beam no_beam(const SeenPoint&, int) { return {}; }
 std::uint32_t blocker_of(const scenes::Scene& scene, const scenes::RayQuery& query,
                          const SeenPoint& point, const Beam& light) {
   const Vec3 origin = point.lifted();
-  const scenes::ShadowSegment way =
+  const scenes::ShadowSegment segment =
       scenes::shadow_segment({light.direction, light.distance_m}, point.position, origin);
-  const scenes::Hit hit = query.closest(origin, way.direction);
+  const scenes::Hit hit = query.closest(origin, segment.direction);
   // Excludes a lamp's own surface at the end of the ray.
-  if (hit.missed() || !(hit.t < way.reach_m * (1.0 - 1e-4))) return EarthBlockers::none;
+  if (hit.missed() || !(hit.t < segment.reach_m * (1.0 - 1e-4))) return EarthBlockers::none;
   return scene.triangles[hit.triangle].object;
 }
 

@@ -34,8 +34,8 @@ void ShadowClip::set(const TargetFrame& frame, const ConvexPolygon& target,
 }
 
 // Adds the line in which the plane through the point and an outline edge meets the target's plane.
-void ShadowClip::add_line(const Vec3& from, const Vec3& to, double turn) {
-  const Vec3 n = turn * glm::cross(from, to);
+void ShadowClip::add_line(const Vec3& from, const Vec3& to, double sign) {
+  const Vec3 n = sign * glm::cross(from, to);
   lines_.push_back({n.x, n.y, -glm::dot(n, point_), margin_m_ * (std::abs(n.x) + std::abs(n.y))});
 }
 

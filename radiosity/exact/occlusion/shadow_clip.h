@@ -70,7 +70,7 @@ class ShadowClip {
   [[nodiscard]] bool make_lines(const Blocker& blocker);
   [[nodiscard]] bool make_outline(const ConvexBody& body);
   [[nodiscard]] bool is_outside(const ConvexBody& body) const;
-  void add_line(const Vec3& from, const Vec3& to, double turn);
+  void add_line(const Vec3& from, const Vec3& to, double sign);
   void subtract(const Piece& piece);
   [[nodiscard]] bool clear_of_lines(const Piece& piece) const;
   [[nodiscard]] double share(const std::vector<Piece>& pieces, const Vec3& normal) const;

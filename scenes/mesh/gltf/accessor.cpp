@@ -284,11 +284,12 @@ glm::dmat4 node_matrix(const tinygltf::Node& node, const std::filesystem::path& 
         glm::translate(matrix, Vec3(node.translation[0], node.translation[1], node.translation[2]));
   }
   if (!node.rotation.empty()) {
-    const glm::dquat turn(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-    if (!(glm::length(turn) > 1e-9)) {
+    const glm::dquat rotation(node.rotation[3], node.rotation[0], node.rotation[1],
+                              node.rotation[2]);
+    if (!(glm::length(rotation) > 1e-9)) {
       gltf_fail(path, fmt::format("the rotation of node {} has no length", in_quotes(node.name)));
     }
-    matrix = matrix * glm::mat4_cast(glm::normalize(turn));
+    matrix = matrix * glm::mat4_cast(glm::normalize(rotation));
   }
   if (!node.scale.empty()) {
     matrix = glm::scale(matrix, Vec3(node.scale[0], node.scale[1], node.scale[2]));

@@ -106,7 +106,7 @@ class Wardrobe {
   void add(GltfMaterial made, std::uint32_t variant_of) {
     model_.materials.push_back(std::move(made.material));
     model_.coordinates.push_back(made.coordinates);
-    model_.lacks.push_back(std::move(made.lacks));
+    model_.unsupported_of_material.push_back(std::move(made.unsupported));
     model_.variant_of.push_back(variant_of);
   }
 

@@ -148,13 +148,13 @@ std::vector<glm::dmat4> instance_poses(const GltfModel& model, const tinygltf::N
     if (number < 0) return std::vector<glm::dvec4>();
     return read_gltf_fours(model, number, {name, components, components}, path);
   };
-  const auto shifts = read("TRANSLATION", 3), turns = read("ROTATION", 4),
+  const auto shifts = read("TRANSLATION", 3), rotations = read("ROTATION", 4),
              scales = read("SCALE", 3);
   if (!attributes.Has("TRANSLATION") && !attributes.Has("ROTATION") && !attributes.Has("SCALE")) {
     return {matrix};
   }
-  const std::size_t count = std::max({shifts.size(), turns.size(), scales.size()});
-  for (const auto* list : {&shifts, &turns, &scales}) {
+  const std::size_t count = std::max({shifts.size(), rotations.size(), scales.size()});
+  for (const auto* list : {&shifts, &rotations, &scales}) {
     if (list->empty() || list->size() == count) continue;
     gltf_fail(path, fmt::format("{} with {} and {} values", instancing, list->size(), count),
               "its attributes have one value for each instance");
@@ -165,12 +165,12 @@ std::vector<glm::dmat4> instance_poses(const GltfModel& model, const tinygltf::N
   for (std::size_t i = 0; i < count; ++i) {
     glm::dmat4 pose = matrix;
     if (!shifts.empty()) pose = glm::translate(pose, Vec3(shifts[i]));
-    if (!turns.empty()) {
-      const glm::dquat turn(turns[i].w, turns[i].x, turns[i].y, turns[i].z);
-      if (!(glm::length(turn) > 1e-9)) {
+    if (!rotations.empty()) {
+      const glm::dquat rotation(rotations[i].w, rotations[i].x, rotations[i].y, rotations[i].z);
+      if (!(glm::length(rotation) > 1e-9)) {
         gltf_fail(path, fmt::format("the rotation of instance {} has no length", i));
       }
-      pose = pose * glm::mat4_cast(glm::normalize(turn));
+      pose = pose * glm::mat4_cast(glm::normalize(rotation));
     }
     if (!scales.empty()) pose = glm::scale(pose, Vec3(scales[i]));
     poses.push_back(pose);

@@ -33,8 +33,8 @@ class GltfReader {
   Mesh read() {
     name_materials();
     mesh_.unused = model_.unused;
-    mesh_.lacking = model_.lacking;
-    mesh_.material_lacks = model_.lacks;
+    mesh_.unsupported = model_.unsupported;
+    mesh_.unsupported_of_material = model_.unsupported_of_material;
     mesh_.warnings = model_.warnings;
     for (const int root : roots()) visit(root, glm::dmat4(1.0), {}, 1);
     for (std::size_t i = 0; i < visited_.size(); ++i) {
@@ -141,7 +141,7 @@ class GltfReader {
     MeshLamp made{lamp.lamp, add_parts(parts)};
     if (!node.name.empty()) made.lamp.name = node.name;
     if (!made.lamp.is_distant()) made.lamp.position = Vec3(matrix[3]);
-    made.lamp.axis = turned(matrix, made.lamp.axis);
+    made.lamp.axis = rotated(matrix, made.lamp.axis);
     mesh_.lamps.push_back(std::move(made));
   }
 
@@ -153,12 +153,12 @@ class GltfReader {
     MeshCamera made{camera.camera, add_parts(parts)};
     if (!node.name.empty()) made.camera.name = node.name;
     made.camera.position = Vec3(matrix[3]);
-    made.camera.look_at = made.camera.position + turned(matrix, {0.0, 0.0, -1.0});
-    made.camera.up = turned(matrix, {0.0, 1.0, 0.0});
+    made.camera.look_at = made.camera.position + rotated(matrix, {0.0, 0.0, -1.0});
+    made.camera.up = rotated(matrix, {0.0, 1.0, 0.0});
     mesh_.cameras.push_back(std::move(made));
   }
 
-  [[nodiscard]] Vec3 turned(const glm::dmat4& matrix, const Vec3& direction) const {
+  [[nodiscard]] Vec3 rotated(const glm::dmat4& matrix, const Vec3& direction) const {
     const Vec3 made = glm::dmat3(matrix) * direction;
     if (!(glm::length(made) > 0.0)) {
       gltf_fail(path_, "a lamp or a camera hangs on a node of scale 0");
@@ -268,8 +268,8 @@ class GltfReader {
     add_morph_targets(model_, primitive, hung.weights, "NORMAL", normals, path_);
     const auto first = static_cast<std::uint32_t>(mesh_.normals.size());
     for (std::size_t i = 0; i < count; ++i) {
-      const glm::dmat3 turn = glm::transpose(glm::inverse(glm::dmat3(poses[i])));
-      mesh_.normals.emplace_back(glm::normalize(turn * normals[i]));
+      const glm::dmat3 to_normals = glm::transpose(glm::inverse(glm::dmat3(poses[i])));
+      mesh_.normals.emplace_back(glm::normalize(to_normals * normals[i]));
     }
     return first;
   }

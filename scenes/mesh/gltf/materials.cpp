@@ -89,7 +89,7 @@ class Converter {
     name_unused();
     if (source_.extensions.count("KHR_materials_unlit") > 0) {
       material.diffuse = facets.base;
-      lack("unlit materials, taken as diffuse");
+      add_unsupported("unlit materials, taken as diffuse");
     } else {
       reflect(facets, material);
     }
@@ -111,13 +111,13 @@ class Converter {
     return extension_of(source_.extensions, name);
   }
 
-  void lack(std::string what) { made_.lacks.push_back(std::move(what)); }
+  void add_unsupported(std::string what) { made_.unsupported.push_back(std::move(what)); }
 
   // Mean of a texture that is used by its mean only; 1 without a texture.
   glm::dvec4 mean_of(const TextureSlot& slot, bool is_srgb, const char* what) {
     const TextureMap map = textures_.read(slot, is_srgb);
     if (!map.texture) return glm::dvec4(1.0);
-    lack(fmt::format("{}, but for their means", what));
+    add_unsupported(fmt::format("{}, but for their means", what));
     return map.texture->mean();
   }
 
@@ -180,7 +180,7 @@ class Converter {
         facets.alpha = 1.0;
       } else if (source_.alphaMode == "BLEND" && mean.a < 1.0) {
         facets.alpha *= mean.a;
-        lack("blended alpha of textures, but for its mean");
+        add_unsupported("blended alpha of textures, but for its mean");
       }
     }
     if (maps.diffuse.texture || maps.emit.texture || maps.by_vertex) {
@@ -204,15 +204,16 @@ class Converter {
     if (number_of(volume, "thicknessFactor", 0.0) > 0.0) {
       material.ior =
           std::clamp(number_of(extension("KHR_materials_ior"), "ior", 1.5), 1.0, largest_gltf_ior);
-      if (volume.Has("attenuationDistance")) lack("what glass takes away by its thickness");
+      if (volume.Has("attenuationDistance"))
+        add_unsupported("what glass takes away by its thickness");
     }
-    if (facets.roughness > blurred_through) lack("rough glass, taken as clear");
+    if (facets.roughness > blurred_through) add_unsupported("rough glass, taken as clear");
   }
 
   void name_unused() {
-    if (source_.normalTexture.index >= 0) lack("normal maps");
+    if (source_.normalTexture.index >= 0) add_unsupported("normal maps");
     for (const auto& [name, table] : source_.extensions) {
-      if (!is_read_extension(name) && name != "KHR_materials_variants") lack(name);
+      if (!is_read_extension(name) && name != "KHR_materials_variants") add_unsupported(name);
     }
   }
 

@@ -33,7 +33,7 @@ struct VertexColours {
 struct GltfMaterial {
   Material material;
   CoordinateSets coordinates;
-  std::vector<std::string> lacks;  // unsupported properties that change the picture
+  std::vector<std::string> unsupported;  // unsupported properties that change the picture
 };
 // The textures that the material's conversion reads.
 [[nodiscard]] std::vector<WantedTexture> textures_of(const tinygltf::Material& source);

@@ -172,7 +172,7 @@ void count_unused(GltfModel& model) {
   };
   const auto lack = [&](const std::string& what, std::size_t number) {
     count(what, number);
-    if (number > 0) model.lacking[what] += number;
+    if (number > 0) model.unsupported[what] += number;
   };
   for (std::size_t m = 0; m < file.meshes.size(); ++m) {
     for (std::size_t p = 0; p < file.meshes[m].primitives.size(); ++p) {
@@ -204,9 +204,9 @@ void count_unused(GltfModel& model) {
                          !among(extension, compressions);
     is_seen ? lack(extension, 1) : count(extension, 1);
   }
-  for (std::size_t m = 0; m < model.lacks.size(); ++m) {
+  for (std::size_t m = 0; m < model.unsupported_of_material.size(); ++m) {
     if (model.variant_of[m] != no_index) continue;
-    for (const std::string& what : model.lacks[m]) count(what, 1);
+    for (const std::string& what : model.unsupported_of_material[m]) count(what, 1);
   }
 }
 

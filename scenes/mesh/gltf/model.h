@@ -44,12 +44,12 @@ struct GltfModel {
   std::vector<std::uint32_t> variant_of;
   // The material of each mesh's primitives; no_index: a material that does not exist.
   std::vector<std::vector<std::uint32_t>> worn;
-  std::vector<std::vector<std::string>> lacks;  // of each material, as Mesh::material_lacks
+  std::vector<std::vector<std::string>> unsupported_of_material;  // as in Mesh
   std::vector<GltfLamp> lamps;
   std::vector<GltfCamera> cameras;
   std::vector<std::string> warnings;
-  std::map<std::string, std::size_t> unused;   // contents that are not read, as Mesh::unused
-  std::map<std::string, std::size_t> lacking;  // except for materials, as Mesh::lacking
+  std::map<std::string, std::size_t> unused;       // contents that are not read, as Mesh::unused
+  std::map<std::string, std::size_t> unsupported;  // except for materials, as Mesh::unsupported
 };
 
 // Throws base::Error (Input) for the file.

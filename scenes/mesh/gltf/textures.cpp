@@ -47,7 +47,7 @@ TextureTransform transform_of(const tinygltf::Value& table) {
   const double angle = number_of(table, "rotation", 0.0);
   const double c = std::cos(angle), s = std::sin(angle);
   TextureTransform transform;
-  transform.turn = glm::dmat2(c, -s, s, c) * glm::dmat2(scale.x, 0.0, 0.0, scale.y);
+  transform.matrix = glm::dmat2(c, -s, s, c) * glm::dmat2(scale.x, 0.0, 0.0, scale.y);
   transform.shift = two("offset", 0.0);
   return transform;
 }

@@ -27,7 +27,7 @@ constexpr Case eclipse{"eclipse", put_eclipse, "unlit", "sun in the Earth's shad
 constexpr Case night{"night_side", put_night_side, "unlit", "earth has its night side below"};
 constexpr Case iris{"iris_closed", put_iris_closed, "iris", "stops for pallet"};
 constexpr Case sun{"sun_in_frame", put_sun_in_frame, "iris",
-                   "the Sun stands in the picture: iris closed by "};
+                   "the Sun is in the picture: iris closed by "};
 constexpr Case saturated{"saturated", put_saturated, "saturated", "saturated (100 % of it)"};
 constexpr Case lens{"lens", put_lens_blur, "blur", "blurred by the lens"};
 constexpr Case line{"line", put_line_blur, "blur", "blurred by the video line"};

@@ -8,14 +8,14 @@
 
 namespace earthshine::base {
 
-struct Turned {
+struct Azimuth {
   float cosine, sine;
 };
 
-// Cosine and sine of `turns` full turns, turns in [0, 1). Taylor series about the nearest quarter
-// turn; error below 4e-7.
-[[nodiscard]] inline Turned turn(float turns) {
-  const float quarters = 4.0F * turns;
+// Cosine and sine of 2 pi u, u in [0, 1). Taylor series about the nearest multiple of pi / 2; error
+// below 4e-7.
+[[nodiscard]] inline Azimuth azimuth_of(float u) {
+  const float quarters = 4.0F * u;
   // Not negative. Where rounding is off, the other quarter is as near.
   // NOLINTNEXTLINE(bugprone-incorrect-roundings)
   const auto quarter = static_cast<std::int32_t>(quarters + 0.5F);
