@@ -219,6 +219,14 @@ inline constexpr int most_panes = 8, most_parts = 64;
 inline constexpr double part_px = 0.5;
 // Radius of a source over the scene's diagonal beyond which its strips are not sharp.
 inline constexpr double widest = 0.05;
+// Largest width of a strip of light whose reflection paths may miss, over the scene's diagonal.
+inline constexpr double wide_share = 0.02;
+// Spots that stand for all such strips, and blocks of pixels that they may light: rays.
+inline constexpr std::size_t most_lit_spots = 32;
+inline constexpr double most_blocks = 1024.0;
+// Least distance of a spot from a surface that it lights, over the scene's diagonal: a nearer one
+// would count for many.
+inline constexpr double near_spot = 0.05;
 
 // --- Witness: samples (witness/witness.cpp, source_edges.cpp) ---
 // Expected samples on a spot, least and most: more give more confidence.

@@ -34,8 +34,8 @@ struct LightView {
 // Finds the light on surfaces beyond the outlines that a source sees.
 class LightStrips {
  public:
-  LightStrips(WitnessScene& scene, SpotMap& spots)
-      : scene_(scene), shared_(scene.shared), camera_(scene.camera), spots_(spots) {
+  LightStrips(WitnessScene& scene, SpotMap& spots, std::vector<LitSpot>& lit)
+      : scene_(scene), shared_(scene.shared), camera_(scene.camera), spots_(spots), lit_(lit) {
     const scenes::Box box = scenes::box_around(shared_.scene.vertices);
     diagonal_m_ = box.diagonal();
     beside_m_ =
@@ -178,6 +178,7 @@ class LightStrips {
     if (glm::length(across) <= 1e-3 * glm::length(whole)) return;
     for (const double side : {-1.0, 1.0}) {
       const Strip strip{view, at, side * glm::normalize(across), (to - from) * whole};
+      if (!is_part) add_lit(strip);
       const double length_px = probe(strip);
       if (is_part || length_px <= 1.5 * tuning::part_px) continue;
       const int parts =
@@ -193,7 +194,52 @@ class LightStrips {
   struct Strip {
     const LightView& view;
     Vec3 at, across, step;
+
+    // Takes the surface as a plane: where light through `target` reaches it.
+    [[nodiscard]] Vec3 on_plane(const Receiver& first, const Vec3& target) const {
+      const Vec3 direction = view.toward(target);
+      return target + glm::dot(first.position - target, first.normal) /
+                          glm::dot(direction, first.normal) * direction;
+    }
   };
+
+  // Whether light at that distance across the strip ends on the plane of the first receiver.
+  bool is_on_plane(const Strip& strip, const Receiver& first, double off) {
+    const Vec3 target = strip.at + off * strip.across;
+    const auto there = receive(strip.view, target);
+    if (!there) return false;
+    const Vec3 expected = strip.on_plane(first, target);
+    return glm::length(there->position - expected) <=
+           0.3 * glm::length(expected - first.position) + 8.0 * first.offset_m;
+  }
+
+  // Notes the light of a narrow strip, whether the camera sees it or not.
+  void add_lit(const Strip& strip) {
+    const auto first = receive(strip.view, strip.at + beside_m_ * strip.across);
+    if (!first || !base::is_lit(first->material->diffuse)) return;
+    const auto is_same = [&](double off) { return is_on_plane(strip, *first, off); };
+    if (is_same(-beside_m_)) return;
+    const auto width = width_of(tuning::wide_share * diagonal_m_, beside_m_, is_same);
+    if (!width) return;
+    const LightView& view = strip.view;
+    const Vec3 in = view.toward(first->position),
+               start = first->position + first->offset_m * first->normal;
+    const Vec3 source_sees =
+        view.mirror != nullptr ? view.mirror->image(first->position) : first->position;
+    const double reach =
+        view.is_distant ? 1e9 : glm::length(view.from - start) * (1.0 - 1e-6) - first->offset_m;
+    const double light = view.source->illuminance(source_sees) *
+                         std::max(0.0, glm::dot(in, first->normal)) *
+                         scene_.share(start, in, reach, view.number);
+    const Vec3 place = strip.on_plane(*first, strip.at + 0.5 * *width * strip.across);
+    const Vec3 corner = strip.on_plane(*first, strip.at);
+    const Vec3 across = strip.on_plane(*first, strip.at + *width * strip.across) - corner;
+    const Vec3 along = strip.on_plane(*first, strip.at + strip.step) - corner;
+    const double intensity_cd = light * base::luminance(first->material->diffuse) / pi *
+                                share_of_edge * glm::length(glm::cross(along, across));
+    if (intensity_cd > 0.0) lit_.push_back({place, first->normal, intensity_cd});
+  }
+
   // Adds a strip that is no longer than a pixel, or any strip if `adds`. Returns its length, px.
   double probe(const Strip& strip, bool adds = false) {
     const double beside_m = beside_m_;
@@ -204,12 +250,7 @@ class LightStrips {
     if (!first) return 0.0;
     const double lit = luminance(strip.view, *first);
     if (lit <= 0.0) return 0.0;
-    // Takes the surface as a plane: where light through `target` reaches it.
-    const auto on_plane = [&](const Vec3& target) {
-      const Vec3 direction = strip.view.toward(target);
-      return target + glm::dot(first->position - target, first->normal) /
-                          glm::dot(direction, first->normal) * direction;
-    };
+    const auto on_plane = [&](const Vec3& target) { return strip.on_plane(*first, target); };
     const auto film = [&](const Vec3& target) {
       return camera_.film_from(camera_.position, on_plane(target));
     };
@@ -218,14 +259,7 @@ class LightStrips {
     const double px_per_m =
         glm::length(film(start + beside_m * strip.across) - film_start) / beside_m;
     if (!(px_per_m > 0.0)) return 0.0;
-    const auto is_same = [&](double off) {
-      const Vec3 target = strip.at + off * strip.across;
-      const auto there = receive(strip.view, target);
-      if (!there) return false;
-      const Vec3 expected = on_plane(target);
-      return glm::length(there->position - expected) <=
-             0.3 * glm::length(expected - first->position) + 8.0 * first->offset_m;
-    };
+    const auto is_same = [&](double off) { return is_on_plane(strip, *first, off); };
     if (is_same(-beside_m)) return 0.0;
     const double wide_m = tuning::wide_px / px_per_m;
     auto width = width_of(wide_m, beside_m, is_same);
@@ -251,6 +285,7 @@ class LightStrips {
   const ShadingScene& shared_;
   const CameraModel& camera_;
   SpotMap& spots_;
+  std::vector<LitSpot>& lit_;
   double diagonal_m_ = 0.0;
   double beside_m_ = 0.0;  // distance from an edge at which rays distinguish its sides
   std::vector<LightView> views_;
@@ -258,8 +293,9 @@ class LightStrips {
 
 }  // namespace
 
-void add_light_strips(WitnessScene& scene, std::span<const SceneEdge> edges, SpotMap& spots) {
-  LightStrips(scene, spots).find(edges);
+void add_light_strips(WitnessScene& scene, std::span<const SceneEdge> edges, SpotMap& spots,
+                      std::vector<LitSpot>& lit) {
+  LightStrips(scene, spots, lit).find(edges);
 }
 
 }  // namespace earthshine::raytrace

@@ -23,10 +23,12 @@ class SourceStrips {
 
   void find(std::span<const SceneEdge> edges) {
     if (!any_) return;
-    for (const SceneEdge& edge : edges) {
-      if (edge.is_outline(camera_.position, false)) add_line(edge.a, edge.b);
+    add_lines(edges);
+    for (const scenes::FlatMirror& mirror : shared_.query.specular_paths().mirrors()) {
+      if (mirror.height_m(camera_.position) <= 0.0) continue;
+      mirror_ = &mirror;
+      add_lines(edges);
     }
-    for (const WitnessSource& source : scene_.sources()) add_outline(source);
     const std::size_t stride = lines_.size() / tuning::most_probes + 1;
     for (std::size_t k = 0; k < lines_.size() && !scene_.stops(); k += stride) {
       probe(lines_[k], static_cast<double>(stride) * lines_[k].length_px);
@@ -79,7 +81,24 @@ class SourceStrips {
            static_cast<std::size_t>(x);
   }
 
+  // Outlines that the camera sees directly, or in mirror_.
+  void add_lines(std::span<const SceneEdge> edges) {
+    const Vec3 eye = mirror_ != nullptr ? mirror_->image(camera_.position) : camera_.position;
+    for (const SceneEdge& edge : edges) {
+      if (edge.is_outline(eye, false)) add_line(edge.a, edge.b);
+    }
+    for (const WitnessSource& source : scene_.sources()) add_outline(source);
+  }
+
   void add_line(Vec3 a, Vec3 b) {
+    if (mirror_ != nullptr) {
+      const double height_a = mirror_->height_m(a), height_b = mirror_->height_m(b);
+      if (height_a <= 0.0 && height_b <= 0.0) return;
+      if (height_a < 0.0) a = glm::mix(a, b, height_a / (height_a - height_b));
+      if (height_b < 0.0) b = glm::mix(b, a, height_b / (height_b - height_a));
+      a = mirror_->image(a);
+      b = mirror_->image(b);
+    }
     const double depth_a = glm::dot(a - camera_.position, camera_.forward);
     const double depth_b = glm::dot(b - camera_.position, camera_.forward);
     const double near = 1e-6 * std::max({1.0, std::abs(depth_a), std::abs(depth_b)});
@@ -111,9 +130,17 @@ class SourceStrips {
       const glm::dvec2 at = a + (first + (k + 0.5) * (last - first) / steps) * along;
       const int x = std::min(static_cast<int>(at.x), camera_.columns - 1);
       const int y = std::min(static_cast<int>(at.y), camera_.rows - 1);
-      if (x >= 0 && y >= 0 && pixels_[index(x, y)])
+      if (x >= 0 && y >= 0 && pixels_[index(x, y)] && may_be_in_mirror(at))
         lines_.push_back({at, along, (last - first) / steps});
     }
+  }
+
+  // Whether the ray through a film position passes the bounding sphere of mirror_, if any.
+  [[nodiscard]] bool may_be_in_mirror(const glm::dvec2& film) const {
+    if (mirror_ == nullptr) return true;
+    const Vec3 direction = camera_.direction_from(camera_.position, film.x, film.y);
+    const Vec3 offset = glm::cross(mirror_->centre - camera_.position, direction);
+    return glm::length(offset) <= mirror_->radius_m;
   }
 
   // Outlines of sources that are no surfaces of the scene: lamps and Suns.
@@ -168,8 +195,12 @@ class SourceStrips {
     if (spot.area_px2 * lit > scene_.least) spots_.add(spot);
   }
 
-  // Luminance of sources at a film position, cd/m^2: through straight glass and by flat mirrors.
+  // Luminance of sources at a film position, cd/m^2: through straight glass and by flat mirrors; 0
+  // outside the picture, so that a source cut by its border is a strip.
   double luminance(const glm::dvec2& film) {
+    if (film.x < 0.0 || film.y < 0.0 || film.x > camera_.columns || film.y > camera_.rows) {
+      return 0.0;
+    }
     const scenes::Scene& scene = shared_.scene;
     Vec3 from = camera_.position;
     Vec3 direction = camera_.direction_from(from, film.x, film.y);
@@ -213,6 +244,7 @@ class SourceStrips {
   SpotMap& spots_;
   std::vector<bool> pixels_;
   bool any_ = false;
+  const scenes::FlatMirror* mirror_ = nullptr;
   std::vector<Line> lines_;
 };
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "raytrace/witness/edges.h"
 #include "raytrace/witness/images.h"
+#include "raytrace/witness/lit_spots.h"
 
 namespace earthshine::raytrace {
 
@@ -14,7 +16,9 @@ namespace earthshine::raytrace {
 void add_source_strips(WitnessScene& scene, std::span<const SceneEdge> edges, SpotMap& spots);
 
 // Strips of light on visible surfaces, along the outlines that a small source sees, directly or by
-// a flat mirror.
-void add_light_strips(WitnessScene& scene, std::span<const SceneEdge> edges, SpotMap& spots);
+// a flat mirror. lit: those on all surfaces, also hidden ones, no wider than tuning::wide_share of
+// the scene's diagonal.
+void add_light_strips(WitnessScene& scene, std::span<const SceneEdge> edges, SpotMap& spots,
+                      std::vector<LitSpot>& lit);
 
 }  // namespace earthshine::raytrace

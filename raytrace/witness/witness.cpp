@@ -25,7 +25,9 @@ Witness::Witness(const ShadingScene& shared, const CameraModel& camera,
   if (!options.images_alone) {
     const std::vector<SceneEdge> edges = find_edges(shared.scene);
     add_source_strips(scene, edges, slivers_);
-    add_light_strips(scene, edges, lit_);
+    std::vector<LitSpot> spots;
+    add_light_strips(scene, edges, lit_, spots);
+    reflected_ = LitSpots(scene, spots);
   }
   rays_ = scene.rays();
   choose();
@@ -161,7 +163,30 @@ std::vector<float> Witness::unexplained(const PixelSums& sums) const {
       missing[window.index(x, y)] = static_cast<float>(light - found);
     }
   }
+  if (!reflected_.empty()) add_unreflected(sums, missing);
   return missing;
+}
+
+void Witness::add_unreflected(const PixelSums& sums, std::vector<float>& missing) const {
+  const Window& window = sums.window;
+  std::vector<float> unreflected(sums.samples.size(), 0.0F);
+  double square = 0.0;
+  for (int y = window.y; y < window.y + window.rows; ++y) {
+    for (int x = window.x; x < window.x + window.columns; ++x) {
+      const std::size_t p = window.index(x, y);
+      const double light = reflected_.luminance(x, y);
+      const double found = sums.luminance[p] / std::max(1U, sums.samples[p]);
+      if (found >= tuning::found_share * light) continue;
+      unreflected[p] = static_cast<float>(light - found);
+      square += (light - found) * (light - found);
+    }
+  }
+  // Less than the wanted error may be noise of paths, which is stated.
+  const double limit = options_.error * options_.luminance;
+  if (square <= limit * limit * double(sums.samples.size())) return;
+  missing.resize(sums.samples.size(), 0.0F);
+  for (std::size_t p = 0; p < missing.size(); ++p)
+    missing[p] = std::max(missing[p], unreflected[p]);
 }
 
 }  // namespace earthshine::raytrace

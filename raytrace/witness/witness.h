@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "raytrace/shade/pixel_sums.h"
+#include "raytrace/witness/lit_spots.h"
 #include "raytrace/witness/spot_map.h"
 
 namespace earthshine::raytrace {
@@ -32,8 +33,9 @@ class Witness {
   // Luminance of the spots in each pixel of the sums; 0 if they do not matter
   // (PixelSums::spot_luminance).
   [[nodiscard]] std::vector<float> spot_luminance(const PixelSums& sums) const;
-  // Mean luminance that the samples of a pixel and its neighbours have missed, cd/m^2; 0 if they
-  // agree with the witness. Empty if all agree.
+  // Mean luminance that the samples of a pixel and its neighbours have missed, cd/m^2: of spots, and
+  // of light that small lit spots reflect there; 0 if they agree with the witness. Empty if all
+  // agree.
   [[nodiscard]] std::vector<float> unexplained(const PixelSums& sums) const;
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
@@ -50,6 +52,8 @@ class Witness {
   [[nodiscard]] double risk(const SpotMap::Pixel& pixel) const;
   // RMS error that spots may leave in the picture, cd/m^2.
   [[nodiscard]] double allowed() const;
+  // Adds the light of lit spots to `missing`, if all of it exceeds the wanted error.
+  void add_unreflected(const PixelSums& sums, std::vector<float>& missing) const;
   void choose();
 
   const CameraModel& camera_;
@@ -57,6 +61,7 @@ class Witness {
   // Whole images of sources, strips of sources, and spots on surfaces. The first two may contain
   // the same source.
   SpotMap images_, slivers_, lit_;
+  LitSpots reflected_;
   // Least risk of a spot on surfaces that matters (the allowed error covers the sum of smaller
   // risks), and the number of pixels with such spots.
   double least_risk_ = 0.0, chosen_ = 0.0;

@@ -259,5 +259,46 @@ TEST(SmallSources, ASliverBesideASheetIsOne) {
   }
 }
 
+// The border of the picture cuts an emitter: 0.05 px of it are inside, over a height of 0.3 m.
+TEST(SmallSources, ASliverAtTheBorderOfThePictureIsOne) {
+  tests::SceneBuilder builder;
+  const double half = 2.5 * std::tan(base::radians(12.5));  // m, half of the picture at 2.5 m
+  const double px_per_m = pixels_across / 2.0 / half;
+  const double low = half - 0.05 / px_per_m;
+  builder.quad(builder.material(tests::grey(0.0, source_exitance)), {low, 0.5, 0.7},
+               {low + 0.5, 0.5, 0.7}, {low + 0.5, 0.5, 1.0}, {low, 0.5, 1.0});
+  scenes::Camera camera;
+  camera.position = Vec3(0.0, -2.0, 0.85);
+  camera.look_at = Vec3(0.0, 0.5, 0.85);
+  camera.fov_deg = 25.0;
+  const double expected = source_exitance / base::pi * 0.05 * 0.3 * px_per_m;
+  expect_sum(builder.scene, camera, expected, every_way().back());
+}
+
+// The emitter behind the camera is seen in a mirror at y = 0.5, 0.25 m beside the axis; a sheet
+// 1 mm before it hides all but 1 mm. The image is 3.5 m away: 2.5 m to the mirror and 1 m back.
+TEST(SmallSources, ASliverInAFlatMirrorIsOne) {
+  tests::SceneBuilder builder;
+  scenes::Material silvered = tests::grey(0.0);
+  silvered.mirror = Rgb(0.7);
+  builder.quad(builder.material(silvered), {-1, 0.5, 0}, {1, 0.5, 0}, {1, 0.5, 2}, {-1, 0.5, 2});
+  builder.quad(builder.material(tests::grey(0.0, source_exitance)), {0.5, -0.5, 0.7},
+               {0.25, -0.5, 0.7}, {0.25, -0.5, 1.0}, {0.5, -0.5, 1.0});
+  scenes::Material black = tests::grey(0.0);
+  black.two_sided = true;
+  const double edge = 0.499;
+  builder.quad(builder.material(black), {0.24, -0.499, 0.6}, {edge, -0.499, 0.6},
+               {edge, -0.499, 1.1}, {0.24, -0.499, 1.1});
+  scenes::Camera camera;
+  camera.position = Vec3(0.0, -2.0, 0.85);
+  camera.look_at = Vec3(0.0, 0.5, 0.85);
+  camera.fov_deg = 25.0;
+  const double px_per_m = pixels_across / 2.0 / std::tan(base::radians(12.5)) / 3.5;
+  // From the mirrored camera the edge of the sheet, 3.499 m away, hides up to 0.499 * 3.5 / 3.499.
+  const double seen = 0.5 - edge * 3.5 / 3.499;
+  const double expected = 0.7 * source_exitance / base::pi * seen * 0.3 * px_per_m * px_per_m;
+  expect_sum(builder.scene, camera, expected, every_way().back());
+}
+
 }  // namespace
 }  // namespace earthshine::raytrace

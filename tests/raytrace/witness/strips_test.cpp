@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "raytrace/render.h"
@@ -168,6 +169,48 @@ TEST(Witness, LightThatNoSampleFindsIsStated) {
   for (std::size_t p = 0; p < sums.samples.size(); ++p) {
     sums.luminance[p] = light * sums.samples[p];
   }
+  EXPECT_TRUE(witness.unexplained(sums).empty());
+}
+
+// The Sun through a hole of 4 mm in the lid of a room. Without any sample of its reflection, the
+// witness states what one reflection gives a pixel: at most twice the truth, as two pairs of edges
+// report the hole, and at least that by the nearest and farthest geometry: I cos cos' / d^2 rho / pi
+// with I = rho E cos A / pi, d from 1 m to 3 m.
+TEST(Witness, ReflectedLightThatNoPathFindsIsStated) {
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.6));
+  const double low = 0.998, high = 1.002;
+  builder.quad(m, {0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0});
+  for (const auto& [x0, y0, x1, y1] :
+       {std::array{0.0, 0.0, low, 2.0}, std::array{high, 0.0, 2.0, 2.0},
+        std::array{low, 0.0, high, low}, std::array{low, high, high, 2.0}}) {
+    builder.quad(m, {x0, y0, 2}, {x0, y1, 2}, {x1, y1, 2}, {x1, y0, 2});
+    builder.quad(m, {x0, y0, 2.01}, {x1, y0, 2.01}, {x1, y1, 2.01}, {x0, y1, 2.01});
+  }
+  scenes::Sun sun;
+  sun.direction = Vec3(0, 0, 1);
+  sun.angular_radius_deg = 0.0;
+  builder.scene.sun = sun;
+  scenes::Camera camera;  // sees the middle of the lid's inner side
+  camera.position = Vec3(0.5, 0.5, 0.5);
+  camera.look_at = Vec3(0.6, 0.6, 2.0);
+  camera.up = Vec3(1, 0, 0);
+  camera.fov_deg = 5.0;
+  const tests::Prepared prepared(builder.scene);
+  RenderOptions options;
+  options.columns = options.rows = 8;
+  const radiosity::Solution solution = prepared.solve({});
+  ShadingSetup setup(prepared, solution, camera, options);
+  const Witness witness(setup.shared(), setup.camera(), {0.05, 1e-6, 0.0, false, {}});
+  PixelSums sums(Window{0, 0, 8, 8}, 1, false);
+  sums.samples.assign(64, 1U);
+  const std::vector<float> missing = witness.unexplained(sums);
+  ASSERT_EQ(missing.size(), 64U);
+  // From the spot at (1, 1, 0) to the lid at (0.6, 0.6, 2): d^2 = 4.32, both cosines 2 / d.
+  const double intensity = 0.6 * sun.illuminance_lx.g / base::pi * (high - low) * (high - low);
+  const double one = intensity * (4.0 / 4.32) / 4.32 * 0.6 / base::pi;
+  EXPECT_NEAR(double(missing[27]) / one, 2.0, 0.1);
+  for (std::size_t p = 0; p < 64; ++p) sums.luminance[p] = one;
   EXPECT_TRUE(witness.unexplained(sums).empty());
 }
 

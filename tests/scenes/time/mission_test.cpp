@@ -242,7 +242,7 @@ TEST_F(MissionScene, BadKeysAreRefused) {
     std::string text;
     std::vector<std::string> says;
   } bad[] = {
-      {"[time]\nstart = \"2026-03-01T12:00:00\"\n", {"scene.toml:2:1", "without a trajectory"}},
+      {"[time]\nstart = \"2026-03-01T12:00:00\"\n", {"scene.toml:2:1", "needs a trajectory"}},
       {"[time]\nstart = \"1 March 2026\"\n" + orbit, {"scene.toml:3:1", "1 March 2026", "UTC"}},
       {"[time]\nstart = 2026-03-01T12:00:00+01:00\n" + orbit, {"scene.toml:3:1", "+01:00", "UTC"}},
       {"[time]\nstart = \"2026-03-01T12:00:00\"\nstop = \"2026-03-01T13:00:00\"\n" + orbit,
