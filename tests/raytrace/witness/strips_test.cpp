@@ -172,10 +172,8 @@ TEST(Witness, LightThatNoSampleFindsIsStated) {
   EXPECT_TRUE(witness.unexplained(sums).empty());
 }
 
-// The Sun through a hole of 4 mm in the lid of a room. Without any sample of its reflection, the
-// witness states what one reflection gives a pixel: at most twice the truth, as two pairs of edges
-// report the hole, and at least that by the nearest and farthest geometry: I cos cos' / d^2 rho / pi
-// with I = rho E cos A / pi, d from 1 m to 3 m.
+// The Sun shines through a hole of 4 mm into a room, and no sample finds the reflection of the spot.
+// The witness states the light of one reflection, twice, as two pairs of edges report the hole.
 TEST(Witness, ReflectedLightThatNoPathFindsIsStated) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.6));
