@@ -221,7 +221,9 @@ inline constexpr double part_px = 0.5;
 inline constexpr double widest = 0.05;
 // Largest width of a strip of light whose reflection paths may miss, over the scene's diagonal.
 inline constexpr double wide_share = 0.02;
-// Spots that stand for all such strips, and blocks of pixels that they may light: rays.
+// Places along such a strip that are tested for light.
+inline constexpr int strip_parts = 8;
+// Spots that represent all such strips, and blocks of pixels that they may light: rays.
 inline constexpr std::size_t most_lit_spots = 32;
 inline constexpr double most_blocks = 1024.0;
 // Least distance of a spot from a surface that it lights, over the scene's diagonal: a nearer one

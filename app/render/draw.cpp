@@ -95,7 +95,7 @@ Drawn draw_picture(const RenderContext& context, const scenes::Camera& camera, S
   drawn.errors = raytrace::error_budget(context.scene(), {&camera, options}, drawn.frame);
   if (const std::size_t pixels = drawn.frame.report.unexplained_pixels; pixels > 0) {
     drawn.errors.not_captured.push_back(
-        fmt::format("light in {} pixels that sources send there and no sample found; the error "
+        fmt::format("light in {} pixels that the witness predicts and no sample found; the error "
                     "counts it as missing",
                     pixels));
   }

@@ -290,7 +290,7 @@ std::string times_of(const StudyInstants& instants) {
   return last == 0 ? at(0) : at(0) + " to " + at(last);
 }
 
-// The scene's surfaces, cameras and lights for that way; one_pose: of several.
+// The scene's surfaces, cameras and lights at those instants; one_pose: of several.
 void fill_part(const studies::StudyFile& study, const Common& common, StudyInstants instants,
                bool one_pose, StudyPart& part) {
   scenes::Scene& scene = part.loaded.scene;

@@ -14,7 +14,7 @@ namespace earthshine::radiosity {
 // Intersection of a wall with the plane of a facet.
 struct Trace {
   PlanePoint from, to;
-  // Points with way . p >= reach are in front of the wall, if it is one-sided.
+  // Points with normal . p >= reach are in front of the wall, if it is one-sided.
   PlanePoint normal;
   double reach;
   Vec3 front;  // unit, in the facet's plane: direction of the wall's front
@@ -53,7 +53,7 @@ struct PartedCell {
 // Appends to part_nodes and outlines.
 void append(Patches& patches, const PartedCell& parted);
 
-// Patch of a ray's hit, as Patches::find, after moving the hit back by back_m along `way`: at the
+// Patch of a ray's hit, as Patches::find, after moving the hit back by back_m along `direction`: at the
 // foot of a wall rounding may have put the hit behind the wall.
 [[nodiscard]] std::uint32_t find_before(const Patches& patches, const TrianglePlace& hit,
                                         bool front, const Vec3& direction, double back_m);

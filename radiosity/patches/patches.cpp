@@ -208,22 +208,22 @@ Rectangle Patches::rectangle(std::uint32_t patch) const {
 }
 
 std::array<Vec3, 4> Patches::corners(std::uint32_t patch) const {
-  const auto on_its_side = [&](const std::array<Vec3, 4>& p) {
+  const auto oriented = [&](const std::array<Vec3, 4>& p) {
     return is_back[patch] != 0 ? std::array<Vec3, 4>{p[0], p[3], p[2], p[1]} : p;
   };
   const auto of = [&](const Facet& f, const Rectangle& r) {
-    return on_its_side({on_facet(f, r.s0, r.t0), on_facet(f, r.s1, r.t0), on_facet(f, r.s1, r.t1),
-                        on_facet(f, r.s0, r.t1)});
+    return oriented({on_facet(f, r.s0, r.t0), on_facet(f, r.s1, r.t0), on_facet(f, r.s1, r.t1),
+                     on_facet(f, r.s0, r.t1)});
   };
   const Facet& f = facets[facet[patch]];
   if (is_part(patch)) {
     const Outline& o = outlines[cell[patch].outline];
     const auto at = [&](const PlanePoint& p) { return f.corner + p.x * f.a + p.y * f.b; };
-    return on_its_side({at(o[0]), at(o[1]), at(o[2]), at(o[3])});
+    return oriented({at(o[0]), at(o[1]), at(o[2]), at(o[3])});
   }
   if (!f.is_cluster()) return of(f, rectangle(patch));
   const ClusterSpan span = span_of(f, cell[patch]);
-  if (span.count > 1) return on_its_side(clustered->corners(span));
+  if (span.count > 1) return oriented(clustered->corners(span));
   return of(clustered->facet(span.first), span.part);
 }
 

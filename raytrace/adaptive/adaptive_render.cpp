@@ -203,7 +203,7 @@ class AdaptiveRender {
     if (field_ && allocator_.has_rounds() && shared_.layers > 1) denoise(true);
     if (field_) report_.rays += field_->rays();
     if (witness_) {
-      sums_->unexplained = witness_->unexplained(*sums_);
+      sums_->unexplained = witness_->unexplained(*sums_, state_error(*sums_, field()).luminance);
       report_.unexplained_pixels = static_cast<std::size_t>(
           std::ranges::count_if(sums_->unexplained, [](float light) { return light > 0.0F; }));
     }

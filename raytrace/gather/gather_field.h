@@ -218,8 +218,8 @@ class GatherField {
   [[nodiscard]] float footprint_radius(const GatherPoint& point) const;
   // Distance up to which a point always applies to its surface, m.
   [[nodiscard]] float own_radius(std::size_t point) const;
-  // Origins of this number of rays of a point, other places for each `turn`.
-  [[nodiscard]] RayOrigins draw_origins(Gathered kind, std::size_t point, std::uint32_t half,
+  // Origins of this number of rays of a point, other places for each `stream`.
+  [[nodiscard]] RayOrigins draw_origins(Gathered kind, std::size_t point, std::uint32_t stream,
                                         std::uint32_t rays, RayCounts& counts) const;
   // Column and row, in the field, of a pixel of the window.
   [[nodiscard]] std::array<int, 2> place_of(std::size_t pixel) const;

@@ -39,13 +39,13 @@ void GatherField::classify_origins(std::uint32_t round, const std::function<bool
   cast_solution(anew, round, stop);
 }
 
-RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t half,
+RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t stream,
                                      std::uint32_t rays, RayCounts& counts) const {
   RayOrigins origins;
   if (origins_at(p) > 1) {
     const base::Key key = base::Key(setting_.seed, base::Stream::GatherOrigin, random_number_of(p))
                               .with(number(kind))
-                              .with(half);
+                              .with(stream);
     const base::SobolOwen4 places(key);
     Places in_x, in_y;
     const auto [x, y] = place_of(pixel_of(p));

@@ -56,12 +56,12 @@ void BrightPatches::build(const Span& span, const std::vector<double>& flux) {
   node.radius_m = glm::length(node.half);
   if (span.end - span.begin < 2) return;
   const Vec3& size = node.half;
-  const int offset = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+  const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
   const auto at = patches_.begin();
   std::nth_element(at + span.begin, at + span.middle(), at + span.end,
                    [&](std::uint32_t a, std::uint32_t b) {
-                     const double first = source_->point(a, 0.5, 0.5)[offset],
-                                  second = source_->point(b, 0.5, 0.5)[offset];
+                     const double first = source_->point(a, 0.5, 0.5)[axis],
+                                  second = source_->point(b, 0.5, 0.5)[axis];
                      return first != second ? first < second : a < b;
                    });
   build(span.first(), flux);

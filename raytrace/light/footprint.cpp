@@ -21,10 +21,11 @@ Footprint::Footprint(const PixelView& pixel, const Ray& ray, const Vec3& point, 
   glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
   for (const double x : {-reach, reach}) {
     for (const double y : {-reach, reach}) {
-      const Vec3 offset = pixel.camera.direction_from(lens_, pixel.x + 0.5 + x, pixel.y + 0.5 + y);
-      const double fall = glm::dot(offset, normal);
+      const Vec3 direction =
+          pixel.camera.direction_from(lens_, pixel.x + 0.5 + x, pixel.y + 0.5 + y);
+      const double fall = glm::dot(direction, normal);
       if (fall > -tuning::flattest) return;
-      const Vec3 off = lens_ + height / fall * offset - point;
+      const Vec3 off = lens_ + height / fall * direction - point;
       const glm::dvec2 at(glm::dot(off, along), glm::dot(off, across));
       low = glm::min(low, at);
       high = glm::max(high, at);

@@ -13,7 +13,7 @@ std::span<const Rgb> PathWalker::residual(const IncomingLight& solution, const R
                                           base::Rng& rng) {
   begin(ray, rng);
   sees_sampled_ = from_camera_ = false;
-  leave_specular();
+  restart_segment();
   share_ = share;
   kept_ = solution.residual_weight(first, ray.direction, share);
   follow(solution, first);
@@ -25,7 +25,7 @@ std::span<const Rgb> PathWalker::residual_at(const IncomingLight& solution, cons
                                              base::Rng& rng) {
   begin({}, rng);
   sees_sampled_ = from_camera_ = false;
-  leave_specular();
+  restart_segment();
   if (!scatter_diffusely(solution, origin, normal, u, v)) return finished();
   const scenes::Hit hit = world_.query.closest(ray_.origin, ray_.direction);
   if (hit.missed()) return finished();
@@ -65,7 +65,7 @@ void PathWalker::follow(const IncomingLight& solution, scenes::Hit hit) {
 bool PathWalker::scatter_diffusely(const IncomingLight& solution, const Vec3& origin,
                                    const Vec3& normal, double u, double v) {
   sees_sampled_ = from_camera_ = false;
-  leave_specular();
+  restart_segment();
   ++rays_.gather;
   const bool aims = !solution.bright().empty();
   if (aims && rng_->next() < tuning::aimed_share) {

@@ -39,7 +39,7 @@ std::span<const Rgb> PathWalker::finished() {
 std::span<const Rgb> PathWalker::walk(const Ray& start, base::Rng& rng) {
   begin(start, rng);
   sees_sampled_ = from_camera_ = at_first_ = true;
-  leave_specular();
+  restart_segment();
   ++rays_.camera;
   for (int bounce = 0; step() && survives(bounce); ++bounce) {
   }
@@ -198,7 +198,7 @@ bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
   return base::is_lit(weight_);
 }
 
-// Whether shadow rays of the surface where the path last left by leave_specular() carry light along this
+// Whether shadow rays of the surface where the path last left by restart_segment() carry light along this
 // segment: through straight glass and by at most one flat mirror.
 bool PathWalker::shadow_rays_follow(const Surface& surface, bool through) {
   if (through) return scenes::is_straight_glass(surface.material());
@@ -235,7 +235,7 @@ void PathWalker::scatter(const Surface& surface, scenes::Brdf::Term term) {
   weight_ *= (by_lobe ? surface.material().specular : surface.brdf.diffuse) * sample.weight;
   ray_ = {surface.lifted(), sample.direction};
   sees_sampled_ = from_camera_ = false;
-  leave_specular();
+  restart_segment();
   ++(by_lobe ? rays_.lobe : rays_.gather);
 }
 

@@ -96,7 +96,7 @@ class PathWalker {
   void follow(const IncomingLight& solution, scenes::Hit hit);
   void pass_on(const Surface& surface, bool through);
   bool shadow_rays_follow(const Surface& surface, bool through);
-  void leave_specular() {  // leaves a surface that shadow rays light
+  void restart_segment() {  // leaves a surface that shadow rays light
     straight_ = true;
     mirrors_ = 0;
   }
@@ -113,7 +113,7 @@ class PathWalker {
   bool sees_sampled_ = true;  // no shadow ray of the last surface carried the sources' light
   bool from_camera_ = true;   // by mirrors and glass only
   bool straight_ =
-      true;          // } since the last leave_specular(): by straight glass and flat mirrors only,
+      true;          // } since the last restart_segment(): by straight glass and flat mirrors only,
   int mirrors_ = 0;  // } and the number of flat mirrors
   bool at_first_ = false;  // on the direct way from the camera to the first surface
   bool met_surface_ = false;

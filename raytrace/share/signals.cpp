@@ -10,7 +10,7 @@
 namespace earthshine::raytrace {
 namespace {
 
-constexpr std::size_t windows_a_chunk = 1024;
+constexpr std::size_t points_a_chunk = 1024;
 
 // Sums over all windows of the picture.
 struct Spread {
@@ -45,7 +45,7 @@ std::vector<std::uint8_t> draw_signs(const Neighbours& neighbours, const Estimat
   const std::size_t points = neighbours.count();
   std::vector<std::uint8_t> signs(points);
   const auto for_all = [&](const auto& visit) {
-    base::parallel_chunks(points, windows_a_chunk, [&](std::size_t begin, std::size_t end) {
+    base::parallel_chunks(points, points_a_chunk, [&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) visit(p);
     });
   };
@@ -81,7 +81,7 @@ void find_signals(std::size_t level, const Neighbours::Planes& squares,
   const float *energy = squares[Energy].data(), *of_noise = squares[NoiseSquare].data(),
               *weight = squares[Weight].data(), *e = expected.data();
   const Spread all =
-      base::ordered_sum(points, windows_a_chunk, Spread(), [&](std::size_t begin, std::size_t end) {
+      base::ordered_sum(points, points_a_chunk, Spread(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
           const float scale = weight[p] > 0.0F ? 1.0F / weight[p] : 0.0F;
           signal[p] = (energy[p] - of_noise[p]) * scale;
@@ -102,7 +102,7 @@ void find_signals(std::size_t level, const Neighbours::Planes& squares,
         return part;
       });
   const float mean = all.mean(), by_chance = all.chance_share();
-  base::parallel_chunks(points, windows_a_chunk, [&](std::size_t begin, std::size_t end) {
+  base::parallel_chunks(points, points_a_chunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       const float s = signal[p] + by_chance * (mean * noise[p] - signal[p]);
       const float q = e[p] > 0.0F ? e[p] * of_noise[p] : certain * std::max(0.0F, s);

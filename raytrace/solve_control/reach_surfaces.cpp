@@ -66,10 +66,10 @@ class SurfaceSearch {
     } catch (const base::Stopped&) {
       stop(Limit::Stopped);
     }
-    auto [solution, missing_share] = light_->finished();
+    auto [solution, ledger_defect] = light_->finished();
     result_.solution = std::move(solution);
     result_.solution.report.shadow_rays += rounds_->rays();
-    hold_to_ledger(missing_share);
+    hold_to_ledger(ledger_defect);
     return std::move(result_);
   }
 
@@ -93,15 +93,15 @@ class SurfaceSearch {
     return std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(passes)));
   }
   // Light that no ray finds, such as a small spot near a lamp that is only visible in mirrors, is
-  // missing from all samples alike. The ledger's defect `lacks` then is a lower bound of the error.
-  void hold_to_ledger(double missing_share) {
+  // missing from all samples alike. The ledger's defect then is a lower bound of the error.
+  void hold_to_ledger(double ledger_defect) {
     const double stated = result_.surface.parts.total().estimate;
-    if (result_.steps.empty() || missing_share <= stated) return;
-    const double more = std::sqrt(base::squared(missing_share) - base::squared(stated));
+    if (result_.steps.empty() || ledger_defect <= stated) return;
+    const double more = std::sqrt(base::squared(ledger_defect) - base::squared(stated));
     result_.surface.parts.form_factors =
         result_.surface.parts.form_factors + ErrorEstimate{more, more};
-    result_.steps.back().estimate = missing_share;
-    if (missing_share > wanted_.error && result_.limit == Limit::None) stop(Limit::Ledger);
+    result_.steps.back().estimate = ledger_defect;
+    if (ledger_defect > wanted_.error && result_.limit == Limit::None) stop(Limit::Ledger);
   }
 
   // If ranks divide the form factors, the root rank decides, and all ranks sample.

@@ -121,8 +121,8 @@ LightOnSurfaces::Finished LightOnSurfaces::finished() const {
   solution.columns = light_.columns();
   solution.report = light_.solution.report;
   solution.report.patches = light_.count();
-  if (factors_.shares.is_root()) finished.missing_share = fill(solution);
-  factors_.shares.broadcast(&finished.missing_share, 1);
+  if (factors_.shares.is_root()) finished.ledger_defect = fill(solution);
+  factors_.shares.broadcast(&finished.ledger_defect, 1);
   radiosity::broadcast_solution(factors_.shares, solution);
   return finished;
 }
@@ -144,7 +144,7 @@ double LightOnSurfaces::fill(radiosity::Solution& solution) const {
           std::max(0.0, found.indirect[at + c] - light_.sky[i][static_cast<int>(c)]);
     }
   }
-  const double missing_share = std::hypot(made, close_energy(found));
+  const double ledger_defect = std::hypot(made, close_energy(found));
   found.sky = light_.sky;
   radiosity::FormFactors ends;  // where light ends; patches have the values of their coarse patch
   ends.sky.assign(count, 0.0);  // sets the number of rows; entries are not read
@@ -160,7 +160,7 @@ double LightOnSurfaces::fill(radiosity::Solution& solution) const {
   radiosity::fill_solution(scene_, ends, solution.report.balance.balanced, std::move(found),
                            solution);
   for (std::size_t o = 0; o < backs.size(); ++o) solution.report.objects[o].back_share = backs[o];
-  return missing_share;
+  return ledger_defect;
 }
 
 }  // namespace earthshine::raytrace

@@ -59,7 +59,7 @@ class LightOnSurfaces {
   struct Finished {
     radiosity::Solution solution;
     // Defect of the energy ledger, relative to the mean radiosity or the flux, luminance.
-    double missing_share = 0.0;
+    double ledger_defect = 0.0;
   };
   [[nodiscard]] Finished finished() const;
 

@@ -213,7 +213,7 @@ class LightStrips {
            0.3 * glm::length(expected - first.position) + 8.0 * first.offset_m;
   }
 
-  // Notes the light of a narrow strip, whether the camera sees it or not.
+  // Records the light of a narrow strip, whether the camera sees it or not.
   void add_lit(const Strip& strip) {
     const auto first = receive(strip.view, strip.at + beside_m_ * strip.across);
     if (!first || !base::is_lit(first->material->diffuse)) return;
@@ -221,6 +221,13 @@ class LightStrips {
     if (is_same(-beside_m_)) return;
     const auto width = width_of(tuning::wide_share * diagonal_m_, beside_m_, is_same);
     if (!width) return;
+    // An opening may be shorter than the step.
+    int passing = 0;
+    for (int k = 0; k < tuning::strip_parts; ++k) {
+      const double along = (k + 0.5) / tuning::strip_parts - 0.5;
+      const Strip part{strip.view, strip.at + along * strip.step, strip.across, strip.step};
+      passing += is_on_plane(part, *first, 0.5 * *width) ? 1 : 0;
+    }
     const LightView& view = strip.view;
     const Vec3 in = view.toward(first->position),
                start = first->position + first->offset_m * first->normal;
@@ -235,8 +242,10 @@ class LightStrips {
     const Vec3 corner = strip.on_plane(*first, strip.at);
     const Vec3 across = strip.on_plane(*first, strip.at + *width * strip.across) - corner;
     const Vec3 along = strip.on_plane(*first, strip.at + strip.step) - corner;
-    const double intensity_cd = light * base::luminance(first->material->diffuse) / pi *
-                                share_of_edge * glm::length(glm::cross(along, across));
+    // Both edges of a strip report it, and the lids of an opening are often double.
+    const double share = 0.5 * share_of_edge * passing / tuning::strip_parts;
+    const double intensity_cd = share * light * base::luminance(first->material->diffuse) / pi *
+                                glm::length(glm::cross(along, across));
     if (intensity_cd > 0.0) lit_.push_back({place, first->normal, intensity_cd});
   }
 

@@ -60,21 +60,12 @@ LitSpots::LitSpots(WitnessScene& scene, const std::vector<LitSpot>& spots) {
   const int columns = scene.camera.columns, rows = scene.camera.rows;
   const double pixels = double(columns) * double(rows);
   block_px_ = static_cast<int>(std::ceil(std::sqrt(pixels / tuning::most_blocks)));
-  columns_ = (columns + block_px_ - 1) / block_px_;
-  for (int y = 0; y < rows; y += block_px_) {
-    for (int x = 0; x < columns; x += block_px_) {
-      const glm::dvec2 middle(std::min(x + 0.5 * block_px_, double(columns) - 0.5),
-                              std::min(y + 0.5 * block_px_, double(rows) - 0.5));
-      luminance_.push_back(
-          scene.stops() ? 0.0F : static_cast<float>(luminance_at(scene, middle, chosen, near_m)));
+  for (int y = block_px_ / 2; y < rows; y += block_px_) {
+    for (int x = block_px_ / 2; x < columns && !scene.stops(); x += block_px_) {
+      const double luminance = luminance_at(scene, {x + 0.5, y + 0.5}, chosen, near_m);
+      if (luminance > 0.0) blocks_.push_back({x, y, static_cast<float>(luminance)});
     }
   }
-}
-
-double LitSpots::luminance(int x, int y) const {
-  return double(
-      luminance_[static_cast<std::size_t>(y / block_px_) * static_cast<std::size_t>(columns_) +
-                 static_cast<std::size_t>(x / block_px_)]);
 }
 
 }  // namespace earthshine::raytrace

@@ -15,20 +15,24 @@ struct LitSpot {
   double intensity_cd = 0.0;  // along the normal: luminance times area
 };
 
-// Luminance that one diffuse reflection of the spots' light gives the surfaces in the picture, for
-// blocks of pixels: a lower limit, since further bounces and specular surfaces are left out. Edges
-// of a square opening report it twice.
+// Estimates the luminance that one diffuse reflection of the spots' light gives the surfaces in the
+// middle of blocks of pixels. Further bounces and specular surfaces are left out.
 class LitSpots {
  public:
   LitSpots() = default;
   // Casts at most tuning::most_lit_spots rays for each of tuning::most_blocks blocks.
   LitSpots(WitnessScene& scene, const std::vector<LitSpot>& spots);
-  [[nodiscard]] bool empty() const { return luminance_.empty(); }
-  [[nodiscard]] double luminance(int x, int y) const;  // cd/m^2
+
+  struct Block {
+    int x = 0, y = 0;        // pixel in the middle
+    float luminance = 0.0F;  // cd/m^2
+  };
+  [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
+  [[nodiscard]] int block_px() const { return block_px_; }
 
  private:
-  int block_px_ = 1, columns_ = 0;  // columns_: of blocks
-  std::vector<float> luminance_;
+  int block_px_ = 1;
+  std::vector<Block> blocks_;
 };
 
 }  // namespace earthshine::raytrace

@@ -93,7 +93,7 @@ class SourceStrips {
   void add_line(Vec3 a, Vec3 b) {
     if (mirror_ != nullptr) {
       const double height_a = mirror_->height_m(a), height_b = mirror_->height_m(b);
-      if (height_a <= 0.0 && height_b <= 0.0) return;
+      if (height_a <= mirror_->offset_m && height_b <= mirror_->offset_m) return;
       if (height_a < 0.0) a = glm::mix(a, b, height_a / (height_a - height_b));
       if (height_b < 0.0) b = glm::mix(b, a, height_b / (height_b - height_a));
       a = mirror_->image(a);

@@ -143,7 +143,8 @@ std::vector<float> Witness::spot_luminance(const PixelSums& sums) const {
   return luminance;
 }
 
-std::vector<float> Witness::unexplained(const PixelSums& sums) const {
+std::vector<float> Witness::unexplained(const PixelSums& sums,
+                                        std::span<const float> reflected) const {
   std::vector<float> missing;
   const Window& window = sums.window;
   for (int y = window.y; y < window.y + window.rows; ++y) {
@@ -163,30 +164,39 @@ std::vector<float> Witness::unexplained(const PixelSums& sums) const {
       missing[window.index(x, y)] = static_cast<float>(light - found);
     }
   }
-  if (!reflected_.empty()) add_unreflected(sums, missing);
+  add_unreflected(window, reflected, missing);
   return missing;
 }
 
-void Witness::add_unreflected(const PixelSums& sums, std::vector<float>& missing) const {
-  const Window& window = sums.window;
-  std::vector<float> unreflected(sums.samples.size(), 0.0F);
+void Witness::add_unreflected(const Window& window, std::span<const float> reflected,
+                              std::vector<float>& missing) const {
+  std::vector<float> unreflected(reflected.size(), 0.0F);
   double square = 0.0;
-  for (int y = window.y; y < window.y + window.rows; ++y) {
-    for (int x = window.x; x < window.x + window.columns; ++x) {
-      const std::size_t p = window.index(x, y);
-      const double light = reflected_.luminance(x, y);
-      const double found = sums.luminance[p] / std::max(1U, sums.samples[p]);
-      if (found >= tuning::found_share * light) continue;
-      unreflected[p] = static_cast<float>(light - found);
-      square += (light - found) * (light - found);
+  for (const LitSpots::Block& block : reflected_.blocks()) {
+    if (!window.contains(block.x, block.y)) continue;
+    double found = 0.0, pixels = 0.0;
+    for (int y = block.y - 1; y <= block.y + 1; ++y) {
+      for (int x = block.x - 1; x <= block.x + 1; ++x) {
+        if (!window.contains(x, y)) continue;
+        found += double(reflected[window.index(x, y)]);
+        pixels += 1.0;
+      }
     }
+    const double light = double(block.luminance);
+    found /= pixels;
+    if (found >= tuning::found_share * light) continue;
+    // One pixel takes the squared error of all in the block.
+    const double off = (light - found) * reflected_.block_px();
+    unreflected[window.index(block.x, block.y)] = static_cast<float>(off);
+    square += off * off;
   }
   // Less than the wanted error may be noise of paths, which is stated.
   const double limit = options_.error * options_.luminance;
-  if (square <= limit * limit * double(sums.samples.size())) return;
-  missing.resize(sums.samples.size(), 0.0F);
-  for (std::size_t p = 0; p < missing.size(); ++p)
+  if (square <= limit * limit * double(reflected.size())) return;
+  missing.resize(reflected.size(), 0.0F);
+  for (std::size_t p = 0; p < missing.size(); ++p) {
     missing[p] = std::max(missing[p], unreflected[p]);
+  }
 }
 
 }  // namespace earthshine::raytrace

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "raytrace/shade/pixel_sums.h"
@@ -36,7 +37,9 @@ class Witness {
   // Mean luminance that the samples of a pixel and its neighbours have missed, cd/m^2: of spots, and
   // of light that small lit spots reflect there; 0 if they agree with the witness. Empty if all
   // agree.
-  [[nodiscard]] std::vector<float> unexplained(const PixelSums& sums) const;
+  // reflected: mean luminance of each pixel, with the light of gather points as it is now.
+  [[nodiscard]] std::vector<float> unexplained(const PixelSums& sums,
+                                               std::span<const float> reflected) const;
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
  private:
@@ -53,7 +56,8 @@ class Witness {
   // RMS error that spots may leave in the picture, cd/m^2.
   [[nodiscard]] double allowed() const;
   // Adds the light of lit spots to `missing`, if all of it exceeds the wanted error.
-  void add_unreflected(const PixelSums& sums, std::vector<float>& missing) const;
+  void add_unreflected(const Window& window, std::span<const float> reflected,
+                       std::vector<float>& missing) const;
   void choose();
 
   const CameraModel& camera_;

@@ -165,14 +165,14 @@ class Coincidence {
       add({a, b, false, false});
       return;
     }
-    const bool same_side = glm::dot(first.normal(), second.normal()) > 0.0;
+    const bool same_orientation = glm::dot(first.normal(), second.normal()) > 0.0;
     // House walls are seen from both sides, whichever face rounding puts in front.
-    const bool wall = !same_side && !material(a).two_sided && !material(b).two_sided &&
+    const bool wall = !same_orientation && !material(a).two_sided && !material(b).two_sided &&
                       (kind(a) == FaceParts::Kind::Body || kind(b) == FaceParts::Kind::Body) &&
                       !look_at_each_other(a, b);
     const bool tie = wall || std::abs(overlap->height_m) < tie_share * contact_m;
-    const bool b_before = tie ? is_before(a, b, same_side) : overlap->height_m > 0.0;
-    const bool a_before = same_side != b_before;
+    const bool b_before = tie ? is_before(a, b, same_orientation) : overlap->height_m > 0.0;
+    const bool a_before = same_orientation != b_before;
     add({a, b, b_before, a_before});
     const bool sheet = material(a).two_sided || material(b).two_sided;
     if (!tie || (a_before && b_before && !sheet) ||
@@ -184,7 +184,7 @@ class Coincidence {
     const bool b_over = of_b > of_a;
     Decided& decided =
         decided_[b_over ? std::pair(object(a), object(b)) : std::pair(object(b), object(a))];
-    (same_side || sheet ? decided.over_m2 : decided.sides_m2) += overlap->area_m2;
+    (same_orientation || sheet ? decided.over_m2 : decided.sides_m2) += overlap->area_m2;
   }
 
   // Search distance for other faces around a triangle.
@@ -212,14 +212,14 @@ class Coincidence {
   }
 
   // Whether b is in front of a's front, if heights do not decide.
-  [[nodiscard]] bool is_before(std::uint32_t a, std::uint32_t b, bool same_side) {
+  [[nodiscard]] bool is_before(std::uint32_t a, std::uint32_t b, bool same_orientation) {
     const bool sheet_a = material(a).two_sided, sheet_b = material(b).two_sided;
-    if (!same_side && !sheet_a && !sheet_b) return look_at_each_other(a, b);
+    if (!same_orientation && !sheet_a && !sheet_b) return look_at_each_other(a, b);
     // The higher rank lies on the front of the other; or, if it has no black back, with its own
     // back on the other.
-    if (rank(b) > rank(a)) return !sheet_a || sheet_b || same_side;
-    const bool a_before_b = !sheet_b || sheet_a || same_side;
-    return same_side ? !a_before_b : a_before_b;
+    if (rank(b) > rank(a)) return !sheet_a || sheet_b || same_orientation;
+    const bool a_before_b = !sheet_b || sheet_a || same_orientation;
+    return same_orientation ? !a_before_b : a_before_b;
   }
 
   [[nodiscard]] bool look_at_each_other(std::uint32_t a, std::uint32_t b) {

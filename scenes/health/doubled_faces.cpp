@@ -179,19 +179,19 @@ bool mend_doubled_faces(Scene& scene, const DoubledFaces& doubled, Sheets& sheet
       if (at == other) continue;
       const Face& kept = *at;
       const Triangle &keeps = scene.triangles[kept.first], &goes = scene.triangles[face.first];
-      const bool same_side = glm::dot(area_of(scene, kept), area) > 0.0;
+      const bool same_orientation = glm::dot(area_of(scene, kept), area) > 0.0;
       const bool touch = apart(kept.first, face.first);
-      if (!same_side && touch) continue;
+      if (!same_orientation && touch) continue;
       Found& count = found[{keeps.object, goes.object}];
       const bool same = sheets.alike(keeps.material, goes.material);
-      if (same && same_side && keeps.object != goes.object) ++doubles[goes.object];
-      const bool sheet =
-          same && !same_side && keeps.object == goes.object && !sheets.is_glass(keeps.material);
-      if (!sheet && !(same && same_side && !touch)) {
+      if (same && same_orientation && keeps.object != goes.object) ++doubles[goes.object];
+      const bool sheet = same && !same_orientation && keeps.object == goes.object &&
+                         !sheets.is_glass(keeps.material);
+      if (!sheet && !(same && same_orientation && !touch)) {
         if (sheets.is_glass(keeps.material) || sheets.is_glass(goes.material)) ++count.left;
         continue;
       }
-      ++(same_side ? count.twice : count.back_to_back);
+      ++(same_orientation ? count.twice : count.back_to_back);
       for (std::uint32_t t = 0; t < face.count; ++t) gone[face.first + t] = 1;
       if (!sheet && !scene.materials[goes.material].two_sided) continue;
       const std::uint32_t both = sheets.of(keeps.material);

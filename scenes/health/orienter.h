@@ -50,7 +50,7 @@ class Orienter {
 
   void orient(std::size_t object, bool bodies_alone);
   [[nodiscard]] Parts& parts_of(std::size_t object);
-  // Returns the number of triangles turned.
+  // Returns the number of triangles flipped.
   std::size_t flip(SurfacePart& part, bool all);
   void flip_as_given(SurfacePart& part, Orient word, Counts& counts);
   static void tally(const SurfacePart& part, std::size_t flipped, Counts& counts);

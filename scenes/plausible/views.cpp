@@ -69,11 +69,11 @@ std::size_t most_of(const std::vector<std::size_t>& counts) {
 
 // 1 if a face at `point`, whose back is visible, turns its back to the middle of the object's box,
 // -1 if away from it; 0 for a flat object. normal: of the front.
-std::ptrdiff_t inward(const Box& box, const Vec3& point, const Vec3& normal) {
+std::ptrdiff_t inward_sign(const Box& box, const Vec3& point, const Vec3& normal) {
   constexpr double flat = 1e-6;  // of the box
-  const double inward = glm::dot(box.middle() - point, -normal);
-  if (std::abs(inward) <= flat * box.diagonal()) return 0;
-  return inward > 0.0 ? 1 : -1;
+  const double toward = glm::dot(box.middle() - point, -normal);
+  if (std::abs(toward) <= flat * box.diagonal()) return 0;
+  return toward > 0.0 ? 1 : -1;
 }
 
 double share(std::size_t part, std::size_t all) {
@@ -170,7 +170,7 @@ View sample_view(const Scene& scene, const RayQuery& query, const Camera& camera
         ++view.backs;
         ++view.backs_of[triangle.object];
         view.inner_backs_of[triangle.object] +=
-            inward(bounds[triangle.object], point, triangle_normal(scene, hit.triangle));
+            inward_sign(bounds[triangle.object], point, triangle_normal(scene, hit.triangle));
       }
       view.seen.add(point);
       distances.push_back(glm::length(point - camera.position));

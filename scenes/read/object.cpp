@@ -171,7 +171,7 @@ void take_axes(const TableReader& table, Mesh& mesh, Placement& placement) {
   mesh.is_y_up = false;  // report once
 }
 
-void name_lacking(Mesh& mesh) {
+void warn_of_unsupported(Mesh& mesh) {
   std::string list;
   for (const auto& [what, count] : mesh.unsupported) {
     list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", what, count);
@@ -201,7 +201,7 @@ void take_extras(Scene& scene, const TableReader& table, Mesh& mesh, std::uint32
   };
   miss(lights, unknown_lamps_of_file);
   miss(cameras, flat_cameras_of_file);
-  name_lacking(mesh);
+  warn_of_unsupported(mesh);
   std::string& unused = scene.objects.back().unused;
   bool normals = false;
   for (const auto& [what, count] : mesh.unused) {

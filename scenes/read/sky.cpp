@@ -167,7 +167,7 @@ constexpr std::string_view orbit_keys[] = {
 constexpr std::string_view attitudes[] = {"bay-to-earth", "bay-to-space", "bay-to-sun", "tail-down",
                                           inertial_attitude};
 static_assert(std::size(attitudes) == std::size(orbit_attitudes) + 1);
-constexpr Range full_circle_deg{-360.0, 360.0};
+constexpr Range position_range_deg{-360.0, 360.0};
 constexpr double obliquity_deg = 23.44;  // of the ecliptic
 
 void read_attitude(Scene& scene, Orbit& orbit, const TableReader& table) {
@@ -193,7 +193,7 @@ void read_attitude(Scene& scene, Orbit& orbit, const TableReader& table) {
     }
   }
   orbit.inertial_as = table.choice("inertial_as", orbit_attitudes).value_or(orbit.inertial_as);
-  orbit.inertial_at_deg = table.number("inertial_at_deg", full_circle_deg).value_or(0.0);
+  orbit.inertial_at_deg = table.number("inertial_at_deg", position_range_deg).value_or(0.0);
 }
 
 // The Sun's declination follows from the orbital plane: sin = cos beta sin i sin u + sin beta cos
@@ -258,9 +258,9 @@ Orbit read_orbit(Scene& scene, const TomlNode& node) {
   orbit.altitude_m = 1e3 * table.required(table.number("altitude_km", altitudes_km), "altitude_km",
                                           "altitude_km = ..., the height over the ground");
   orbit.beta_deg = table.number("beta_deg", {-90.0, 90.0}).value_or(0.0);
-  orbit.position_deg = table.number("position_deg", full_circle_deg).value_or(0.0);
+  orbit.position_deg = table.number("position_deg", position_range_deg).value_or(0.0);
   orbit.inclination_deg = table.number("inclination_deg", {0.0, 180.0}).value_or(0.0);
-  orbit.noon_argument_deg = table.number("noon_argument_deg", full_circle_deg).value_or(0.0);
+  orbit.noon_argument_deg = table.number("noon_argument_deg", position_range_deg).value_or(0.0);
   read_attitude(scene, orbit, table);
   if (table.has("inclination_deg") || table.has("noon_argument_deg")) {
     check_declination(scene, orbit);

@@ -170,7 +170,7 @@ void count_unused(GltfModel& model) {
   const auto count = [&](const std::string& what, std::size_t number) {
     if (number > 0) model.unused[what] += number;
   };
-  const auto lack = [&](const std::string& what, std::size_t number) {
+  const auto count_unsupported = [&](const std::string& what, std::size_t number) {
     count(what, number);
     if (number > 0) model.unsupported[what] += number;
   };
@@ -186,7 +186,7 @@ void count_unused(GltfModel& model) {
       for (const auto& target : primitive.targets) {
         for (const auto& [name, accessor] : target) {
           if (name == "POSITION" || name == "NORMAL" || name == "TANGENT") continue;
-          lack("morph targets of " + name, 1);
+          count_unsupported("morph targets of " + name, 1);
         }
       }
     }
@@ -202,7 +202,7 @@ void count_unused(GltfModel& model) {
     if (among(extension, known) || extension.starts_with("KHR_materials_")) continue;
     const bool is_seen = !among(extension, harmless) && !among(extension, of_textures) &&
                          !among(extension, compressions);
-    is_seen ? lack(extension, 1) : count(extension, 1);
+    is_seen ? count_unsupported(extension, 1) : count(extension, 1);
   }
   for (std::size_t m = 0; m < model.unsupported_of_material.size(); ++m) {
     if (model.variant_of[m] != no_index) continue;

@@ -275,7 +275,7 @@ TEST(SmallSources, ASliverAtTheBorderOfThePictureIsOne) {
   expect_sum(builder.scene, camera, expected, every_way().back());
 }
 
-// The emitter behind the camera is seen in a mirror at y = 0.5, 0.25 m beside the axis; a sheet
+// An emitter that faces away from the camera is seen in a mirror at y = 0.5; a sheet
 // 1 mm before it hides all but 1 mm. The image is 3.5 m away: 2.5 m to the mirror and 1 m back.
 TEST(SmallSources, ASliverInAFlatMirrorIsOne) {
   tests::SceneBuilder builder;
