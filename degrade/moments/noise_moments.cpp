@@ -51,8 +51,8 @@ AxisMap product(const AxisMap& w, const AxisMap& v, int lag) {
 }
 
 // Adds the sum over z and the stored d of a(z) b(z + d) C_d(z), with weight `zero` for d = 0 and
-// `others` for the rest. `columns_first`: the transposed planes, so that sums over x run along whole
-// lines.
+// `others` for the rest. `columns_first`: the transposed planes, so that sums over x run along
+// whole lines.
 void add_pairs(Plane& out, const Covariance& noise, const std::vector<Plane>& columns_first,
                const PlaneMap& a, const PlaneMap& b, double zero, double others) {
   const std::size_t rows = size(noise.rows), wide = size(a.along.out());

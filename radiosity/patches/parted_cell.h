@@ -53,8 +53,8 @@ struct PartedCell {
 // Appends to part_nodes and outlines.
 void append(Patches& patches, const PartedCell& parted);
 
-// Patch of a ray's hit, as Patches::find, after moving the hit back by back_m along `direction`: at the
-// foot of a wall rounding may have put the hit behind the wall.
+// Patch of a ray's hit, as Patches::find, after moving the hit back by back_m along `direction`: at
+// the foot of a wall rounding may have put the hit behind the wall.
 [[nodiscard]] std::uint32_t find_before(const Patches& patches, const TrianglePlace& hit,
                                         bool front, const Vec3& direction, double back_m);
 

@@ -73,8 +73,8 @@ using PlanePoint = glm::dvec2;
 using Outline = std::array<PlanePoint, 4>;
 inline constexpr std::uint32_t no_outline = 0xFFFFFFFFU;
 
-// Division of a cell: points with normal . p >= reach are on the second side. A side is the index of
-// another node, or ~k for part k of the cell.
+// Division of a cell: points with normal . p >= reach are on the second side. A side is the index
+// of another node, or ~k for part k of the cell.
 struct PartNode {
   PlanePoint normal;
   double reach;
